@@ -1,0 +1,231 @@
+/* lacquer.h - make, store and check the look-up tables of layered-material renderers.
+ *
+ * The one public header. Everything here is plain C17, keeps no global state, prints nothing and
+ * never exits. Every fallible function returns an lq_status and, when `error` is not NULL, leaves
+ * one line of text there that names the thing, the cause and what would be accepted.
+ *
+ * References in comments are the keys of REFERENCES.md (B18, D22, H16, ...).
+ */
+#ifndef LACQUER_H
+#define LACQUER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LQ_VERSION "0.1.0"
+
+/* ======================================================================================
+ *                                  Status and messages
+ * ====================================================================================== */
+
+typedef enum lq_status {
+    LQ_OK = 0,
+    LQ_BAD_INPUT,     /* an argument outside what is accepted */
+    LQ_IO,            /* the system refused to open, read, write or rename a file */
+    LQ_FORMAT,        /* a file that is not what it should be: foreign, truncated, damaged */
+    LQ_NO_MEMORY,
+    LQ_CANCELLED,     /* a progress callback asked to stop */
+    LQ_NOT_CONVERGED  /* the tolerance was not reached; value and error are still valid */
+} lq_status;
+
+enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 4, LQ_MAX_CHANNELS = 8 };
+
+typedef struct lq_error {
+    char text[LQ_MESSAGE_SIZE]; /* one line, no newline, no trailing stop */
+} lq_error;
+
+/* Progress of a long call. `report` gets the fraction done, in [0,1], from one thread at a time;
+ * returning false cancels the call, which then frees everything and returns LQ_CANCELLED. */
+typedef struct lq_progress {
+    bool (*report)(void *user, double fraction);
+    void *user;
+} lq_progress;
+
+/* ======================================================================================
+ *                                         Axes
+ * ====================================================================================== */
+
+/* How the nodes of an axis are spread: node i of N sits at min + (max - min) w(i / (N - 1)). */
+typedef enum lq_map {
+    LQ_MAP_LINEAR, /* w(u) = u */
+    LQ_MAP_SQRT,   /* w(u) = u^2: the node index goes as the square root of the value */
+    LQ_MAP_POWER,  /* w(u) = u^exponent, exponent > 0 */
+    LQ_MAP_CUSTOM  /* the nodes are given, strictly increasing */
+} lq_map;
+
+typedef struct lq_axis {
+    char name[LQ_NAME_SIZE];
+    size_t size;     /* number of nodes, >= 1 */
+    double min, max; /* first and last node; equal exactly when size is 1 */
+    lq_map map;
+    double exponent; /* LQ_MAP_POWER: its exponent; 1 and 2 for linear and sqrt; 0 for custom */
+    double *nodes;   /* size values, owned by the axis, never NULL in a valid axis */
+} lq_axis;
+
+/* Make an axis and compute its nodes (node 0 is exactly min, the last exactly max). `exponent` is
+ * read for LQ_MAP_POWER only. Errors: empty or over-long name, size 0 or absurd, min >= max for
+ * size > 1, min != max for size 1, anything not finite, exponent <= 0, LQ_MAP_CUSTOM (see below). */
+lq_status lq_axis_make(lq_axis *axis, const char *name, double min, double max, size_t size, lq_map map,
+                       double exponent, lq_error *error);
+
+/* Make a custom axis from `size` strictly increasing finite nodes (copied). */
+lq_status lq_axis_make_custom(lq_axis *axis, const char *name, const double *nodes, size_t size,
+                              lq_error *error);
+
+/* Parse what follows `name=` on the command line: "min:max:n", "min:max:n:map" with map one of
+ * linear, sqrt, power2.5 (any exponent), a single value "0.3" (one node), or a list "0,0.1,1,3"
+ * (custom). */
+lq_status lq_axis_parse(lq_axis *axis, const char *name, const char *text, lq_error *error);
+
+/* The fractional node index of `x`, clamped to [0, size-1]: the inverse of the node map. */
+double lq_axis_locate(const lq_axis *axis, double x);
+
+lq_status lq_axis_copy(lq_axis *to, const lq_axis *from, lq_error *error);
+void lq_axis_free(lq_axis *axis);
+const char *lq_map_name(lq_map map);
+
+/* ======================================================================================
+ *                                         Tables
+ * ====================================================================================== */
+
+/* One fact about how a table was made. Keys are lower case words: "table", "ndf", "scattering",
+ * "masking", "interface", "tolerance", "error", "version", "command", ... */
+typedef struct lq_fact {
+    char *key;
+    char *value;
+} lq_fact;
+
+/* An N-dimensional table of float32. Data of a channel is one block, FIRST AXIS FASTEST:
+ * offset = i0 + size0 (i1 + size1 (i2 + size2 i3)). */
+typedef struct lq_table {
+    int axis_count;
+    lq_axis axes[LQ_MAX_AXES];
+    int channel_count;
+    char channel_names[LQ_MAX_CHANNELS][LQ_NAME_SIZE];
+    float *channels[LQ_MAX_CHANNELS];
+    size_t fact_count;
+    lq_fact *facts; /* in the order they were set */
+} lq_table;
+
+/* A table of zeros over copies of `axes`. Errors: no axis, duplicate names, more entries than the
+ * memory of any machine (the message states the size asked for). */
+lq_status lq_table_create(lq_table **table, const lq_axis *axes, int axis_count,
+                          const char *const *channel_names, int channel_count, lq_error *error);
+void lq_table_free(lq_table *table);
+
+/* Entries per channel. */
+size_t lq_table_entries(const lq_table *table);
+/* The axis called `name`, or -1. */
+int lq_table_axis(const lq_table *table, const char *name);
+
+/* Set, replace or look up a fact. lq_table_fact returns NULL where there is none. */
+lq_status lq_table_set_fact(lq_table *table, const char *key, const char *value, lq_error *error);
+const char *lq_table_fact(const lq_table *table, const char *key);
+
+/* Multilinear interpolation at `point` (one coordinate an axis, clamped to the axis range). */
+double lq_table_lookup(const lq_table *table, int channel, const double *point);
+
+/* Files. Writers go through a temporary name in the same folder, which becomes `path` only when
+ * every byte is on its way to the disk; on any error nothing is left behind and an older file of
+ * that name is untouched. The EXR form holds the axes, the facts and float32 data: reading it back
+ * gives an identical table. The .npy form is C-ordered with the LAST table axis first (so its last
+ * index is the first axis); several channels become a trailing index. */
+lq_status lq_table_write_exr(const lq_table *table, const char *path, lq_error *error);
+lq_status lq_table_read_exr(lq_table **table, const char *path, lq_error *error);
+lq_status lq_table_write_npy(const lq_table *table, const char *path, lq_error *error);
+
+/* ======================================================================================
+ *                               The catalogue of table kinds
+ * ====================================================================================== */
+
+typedef enum lq_scattering {
+    LQ_SINGLE,  /* one hit on the microsurface, then masking */
+    LQ_MULTIPLE /* every number of hits (H16) */
+} lq_scattering;
+
+typedef enum lq_masking {
+    LQ_CORRELATED, /* height-correlated Smith: G2/G1 = (1+L_i)/(1+L_i+L_o) */
+    LQ_SEPARABLE   /* G2/G1 = 1/(1+L_o): older published tables */
+} lq_masking;
+
+/* What an axis of a kind means, the values it accepts, and its nodes unless told otherwise. */
+typedef struct lq_axis_info {
+    const char *name;
+    const char *meaning;
+    double lowest, highest; /* accepted values, inclusive */
+    double min, max;        /* default nodes */
+    size_t size;
+    lq_map map;
+} lq_axis_info;
+
+/* Options a kind listens to; any other one set by the user is refused by name. */
+enum { LQ_TAKES_SCATTERING = 1, LQ_TAKES_MASKING = 2 };
+
+typedef struct lq_kind {
+    const char *id;
+    const char *title;    /* one line */
+    const char *quantity; /* the formula, in plain text */
+    const char *source;   /* paper and equation */
+    int axis_count;
+    lq_axis_info axes[LQ_MAX_AXES];
+    int channel_count;
+    const char *channels[LQ_MAX_CHANNELS];
+    unsigned takes;           /* LQ_TAKES_... */
+    double tolerance;         /* default: absolute error of every value */
+    double finest_tolerance;  /* the smallest that can be asked for */
+    double value_min, value_max;
+} lq_kind;
+
+size_t lq_kind_count(void);
+const lq_kind *lq_kind_at(size_t i);
+/* NULL and a message that lists the known ids where there is no such kind. */
+const lq_kind *lq_kind_find(const char *id, lq_error *error);
+
+/* The NDFs, by the same pattern. */
+size_t lq_ndf_count(void);
+const char *lq_ndf_id(size_t i);
+const char *lq_ndf_title(size_t i);
+
+/* ======================================================================================
+ *                                      Computation
+ * ====================================================================================== */
+
+typedef struct lq_settings {
+    size_t struct_size; /* sizeof(lq_settings); lq_settings_default sets it */
+    const char *ndf;    /* "ggx" */
+    lq_scattering scattering;
+    lq_masking masking;
+    double tolerance; /* absolute error of every value; 0: the kind's default */
+    int threads;      /* 0: one per core. Results do not depend on it. */
+} lq_settings;
+
+lq_settings lq_settings_default(void);
+
+/* One point, computed exactly. `point` has one coordinate per axis of the kind, in its order;
+ * `values` gets one number per channel, `error` (of all channels) an estimate that is meant never
+ * to fall below the distance to the exact integral. LQ_NOT_CONVERGED: the estimate is above the
+ * tolerance; the numbers stand. */
+lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double *point, double *values,
+                  double *estimate, lq_error *error);
+
+/* A whole table over `axes` (one per axis of the kind, in its order and under its names), on all
+ * cores. Its facts say how it was made; fact "error" is the largest error estimate over it. */
+lq_status lq_precompute(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
+                        const lq_progress *progress, lq_table **table, lq_error *error);
+
+/* The default axes of a kind. Free each with lq_axis_free. */
+lq_status lq_kind_axes(const lq_kind *kind, lq_axis *axes, lq_error *error);
+
+/* Energy that leaves after exactly 1, 2, ... `count` hits of a conductor's microsurface; the sum
+ * over all orders is FGD-infinity. point: mu, alpha, n, kappa. */
+lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_t count, double *energies,
+                         lq_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
