@@ -8,9 +8,11 @@
  */
 #include "microfacet/fresnel.h"
 
+#include "microfacet/fresnel_formula.h"
+#include "microfacet/kernels.h"
+
 #include <complex.h>
 #include <math.h>
-#include <stddef.h>
 
 double lq_fresnel_dielectric(double cos_i, double eta, double *cos_t) {
     const double eps_minus_1 = (eta - 1.0) * (eta + 1.0);
@@ -27,30 +29,27 @@ double lq_fresnel_dielectric(double cos_i, double eta, double *cos_t) {
     return fmin(0.5 * (r_s * r_s + r_p * r_p), 1.0);
 }
 
-static double squared_modulus(double complex z) {
-    return creal(z) * creal(z) + cimag(z) * cimag(z);
-}
-
 double lq_fresnel_conductor(double cos_i, double n, double kappa) {
-    if (kappa == 0.0 && n > 0.0) return lq_fresnel_dielectric(cos_i, n, NULL);
-    const double complex eps = CMPLX((n - kappa) * (n + kappa), 2.0 * n * kappa);
-    /* eps = 0 and eps < 0 real reflect everything; a grazing ray is reflected by any material. */
-    if (n == 0.0 || cos_i <= 0.0) return 1.0;
-    const double complex eps_minus_1 = CMPLX((n - 1.0) * (n + 1.0) - kappa * kappa, 2.0 * n * kappa);
-    const double c2 = cos_i * cos_i;
-    const double complex w = csqrt(eps_minus_1 + c2);
-    const double s = squared_modulus(cos_i + w);
-    const double p = squared_modulus(eps * cos_i + w);
-    const double e = squared_modulus(eps_minus_1);
-    const double r_s = e / (s * s);
-    const double r_p = e * squared_modulus((eps + 1.0) * c2 - 1.0) / (p * p);
-    return fmin(0.5 * (r_s + r_p), 1.0);
+    return lq_conductor_reflectance(cos_i, n, kappa);
 }
 
-void lq_fresnel_branch(double n, double kappa, double *angle, double *distance) {
-    const double complex one_minus_eps = CMPLX((1.0 - n) * (1.0 + n) + kappa * kappa, -2.0 * n * kappa);
-    const double complex theta = cacos(csqrt(one_minus_eps));
-    *angle = fmin(fmax(creal(theta), 0.0), 1.5707963267948966);
-    const double outside = creal(theta) - *angle;
-    *distance = hypot(cimag(theta), outside);
+void lq_fresnel_conductors(double cos_i, size_t count, const double *n, const double *kappa,
+                           double *reflectance) {
+    lq_microfacet_kernels_get()->conductors(cos_i, count, n, kappa, reflectance);
+}
+
+/* Distance of the complex angle acos(z) to [0, pi/2], and the nearest point there. */
+static lq_fresnel_singularity nearest_angle(double complex z) {
+    const double complex theta = cacos(z);
+    lq_fresnel_singularity found;
+    found.angle = fmin(fmax(creal(theta), 0.0), 1.5707963267948966);
+    found.distance = hypot(cimag(theta), creal(theta) - found.angle);
+    return found;
+}
+
+void lq_fresnel_singularities(double n, double kappa, lq_fresnel_singularity found[2]) {
+    const double complex eps_minus_1 = CMPLX((n - 1.0) * (n + 1.0) - kappa * kappa, 2.0 * n * kappa);
+    const double complex eps_plus_1 = eps_minus_1 + 2.0;
+    found[0] = nearest_angle(csqrt(-eps_minus_1));
+    found[1] = nearest_angle(eps_plus_1 != 0.0 ? -1.0 / csqrt(eps_plus_1) : -2.0);
 }

@@ -1,18 +1,19 @@
 /* GGX: D = a^2 / (pi (a^2 cos^2 + sin^2)^2), and Smith's projected area in a form without cancellation. */
 #include "microfacet/ggx.h"
 
+#include "microfacet/kernels.h"
+
 #include <math.h>
 
-static const double inverse_pi = 0.31830988618379067154;
-
-static void density(const lq_ndf *ndf, double alpha, size_t count, const double *restrict cos2,
-                    const double *restrict sin2, double *restrict d) {
+static void density(const lq_ndf *ndf, double alpha, size_t count, const double *cos2, const double *sin2,
+                    double *d) {
     (void)ndf;
-    const double a2 = alpha * alpha;
-    for (size_t i = 0; i < count; i++) {
-        const double q = a2 * cos2[i] + sin2[i];
-        d[i] = inverse_pi * a2 / (q * q);
-    }
+    lq_microfacet_kernels_get()->ggx_density(alpha, count, cos2, sin2, d);
+}
+
+static void areas_below(const lq_ndf *ndf, double alpha, size_t count, const double *mu, double *area) {
+    (void)ndf;
+    lq_microfacet_kernels_get()->ggx_areas_below(alpha, count, mu, area);
 }
 
 /* mu Lambda = (sqrt(mu^2 + a^2 sin^2) - mu) / 2, as the quotient that keeps its digits for small a. */
@@ -35,5 +36,6 @@ const lq_ndf lq_ggx = {
     .source = "Walter et al. 2007, eq. 33-34",
     .density = density,
     .area_below = area_below,
+    .areas_below = areas_below,
     .slope_quantile = slope_quantile,
 };

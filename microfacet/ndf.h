@@ -26,6 +26,9 @@ struct lq_ndf {
      * sigma(-omega) = mu Lambda(mu), finite at mu = 0. mu in [0,1]; alpha >= 0. */
     double (*area_below)(const lq_ndf *ndf, double alpha, double mu, double sin_theta);
 
+    /* The same for `count` cosines. */
+    void (*areas_below)(const lq_ndf *ndf, double alpha, size_t count, const double *mu, double *area);
+
     /* tan(theta_m) such that the normals within theta_m of the z axis hold the fraction xi in [0,1) of
      * integral m_z D dm. */
     double (*slope_quantile)(const lq_ndf *ndf, double alpha, double xi);

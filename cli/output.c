@@ -1,0 +1,49 @@
+/* output.c - finds out before the work whether its result can be written. */
+#include "cli/output.h"
+
+#include "cli/message.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *cli_basename(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Whether a new file can be made in `folder`. Trying is the only test that also holds for root,
+ * read-only mounts and folders of /proc. */
+static bool takes_files(const char *folder) {
+    char probe[PATH_MAX];
+    snprintf(probe, sizeof probe, "%s/.lacquer-XXXXXX", folder);
+    int file = mkstemp(probe);
+    if (file < 0) return false;
+    close(file);
+    unlink(probe);
+    return true;
+}
+
+bool cli_output_check(const char *path) {
+    char folder[PATH_MAX - 32] = ".";
+    size_t length = (size_t)(cli_basename(path) - path);
+    if (path[length] == '\0' || strlen(path) >= sizeof folder) {
+        cli_message("'%s' is not the name of a file", path);
+        return false;
+    }
+    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    struct stat there;
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
+        cli_message("cannot write %s: it exists and is not a regular file", path);
+        return false;
+    }
+    if (!takes_files(folder)) {
+        cli_message("cannot write %s: folder %s: %s", path, folder, strerror(errno));
+        return false;
+    }
+    return true;
+}

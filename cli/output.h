@@ -1,0 +1,14 @@
+/* output.h - can a file be written there? Asked before the work, not after it. */
+#ifndef CLI_OUTPUT_H
+#define CLI_OUTPUT_H
+
+#include <stdbool.h>
+
+/* The folder of `path` exists and takes new files, and `path` is not something that a rename must not
+ * replace (a folder, a device). False: a line was printed. */
+bool cli_output_check(const char *path);
+
+/* What follows the last slash. */
+const char *cli_basename(const char *path);
+
+#endif

@@ -1,0 +1,43 @@
+/* verb_list.c - `lacquer list`: what can be computed and written, one line each. */
+#include "cli/catalogue.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/verb.h"
+#include "lacquer.h"
+
+static void print_ndfs(void) {
+    printf("NDFs (--ndf)\n");
+    for (size_t i = 0; i < lq_ndf_count(); i++) printf("  %-15s %s\n", lq_ndf_id(i), lq_ndf_title(i));
+}
+
+static void print_formats(void) {
+    printf("Formats (--format, or the ending of the output file)\n"
+           "  %-15s archive: float32 with axes and provenance; every verb reads it\n"
+           "  %-15s NumPy: float32, C order, last table axis first\n",
+           "exr", "npy");
+}
+
+static int run(int argc, char **argv) {
+    cli_args args = cli_args_begin(&cli_verb_list, argc, argv);
+    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
+        if (id == CLI_BAD) return CLI_FAILED;
+        return cli_fail("unexpected '%s'; list takes no arguments", args.value);
+    }
+    cli_print_tables(stdout);
+    printf("\n");
+    print_ndfs();
+    printf("\n");
+    print_formats();
+    return CLI_DONE;
+}
+
+static const cli_option options[] = {{0}};
+
+const cli_verb cli_verb_list = {
+    .name = "list",
+    .summary = "tables, NDFs and file formats, one line each",
+    .usage = "",
+    .options = options,
+    .examples = "lacquer list",
+    .run = run,
+};

@@ -1,0 +1,35 @@
+# Tests: each tests/test_*.c is one cmocka program, each tests/test_*.sh one bash script. Exit 77 is
+# a skip. Names that end in _slow get the label "slow", which the asan preset leaves out.
+pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
+
+set(test_environment
+    "LACQUER=$<TARGET_FILE:lacquer-program>" "LACQUER_SOURCE=${PROJECT_SOURCE_DIR}"
+    "LACQUER_BUILD=${PROJECT_BINARY_DIR}" "CMAKE_COMMAND=${CMAKE_COMMAND}" "CC=${CMAKE_C_COMPILER}")
+
+function(lacquer_test_properties name)
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300
+                                          ENVIRONMENT "${test_environment}")
+  if(name MATCHES "_slow$")
+    set_tests_properties(${name} PROPERTIES LABELS slow)
+  endif()
+endfunction()
+
+file(GLOB test_programs CONFIGURE_DEPENDS "tests/test_*.c")
+foreach(source IN LISTS test_programs)
+  get_filename_component(name ${source} NAME_WE)
+  add_executable(${name} ${source})
+  lacquer_warnings(${name})
+  target_compile_definitions(${name} PRIVATE _GNU_SOURCE)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${RANDOM123_INCLUDE_DIR})
+  target_link_libraries(${name} PRIVATE lacquer-library PkgConfig::CMOCKA PkgConfig::JANSSON
+                                        OpenEXR::OpenEXRCore OpenMP::OpenMP_C m)
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  lacquer_test_properties(${name})
+endforeach()
+
+file(GLOB test_scripts CONFIGURE_DEPENDS "tests/test_*.sh")
+foreach(source IN LISTS test_scripts)
+  get_filename_component(name ${source} NAME_WE)
+  add_test(NAME ${name} COMMAND bash ${source} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  lacquer_test_properties(${name})
+endforeach()

@@ -1,0 +1,136 @@
+/* Facet quadrature: panels of d around v, pieces of azimuth inside each. */
+#include "microfacet/facets.h"
+
+#include "microfacet/kernels.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* What stays fixed while one direction is integrated. */
+typedef struct view {
+    const lq_ndf *ndf;
+    double alpha;
+    double v_z, sin_v, theta; /* the direction and its angle to the z axis, in [0, pi] */
+    const lq_gauss *inner;
+    const lq_microfacet_kernels *kernels;
+} view;
+
+/* One piece of azimuth, in half-angles h = chi/2 of the mapped azimuth. */
+typedef struct piece {
+    double from, to;
+    bool singular_from, singular_to;
+} piece;
+
+/* Where the azimuth range of a fan opens or closes: d at which the extreme facets (psi = 0 or pi) are
+ * upright (m_z = 0) or reflect along the horizon. The integrand has a square root there. */
+static void add_horizon_crossings(lq_panels *panels, double theta) {
+    lq_panels_add(panels, 0.5 * pi - theta, true);         /* m_z = 0 at psi = pi */
+    lq_panels_add(panels, 0.5 * (0.5 * pi - theta), true); /* mirror = 0 at psi = pi */
+    lq_panels_add(panels, 0.5 * (0.5 * pi + theta), true); /* mirror = 0 at psi = 0 */
+}
+
+/* Masking changes over reflected cosines of the size of the incident one: at grazing incidence that is a
+ * thin layer of facets around those that reflect along the horizon. */
+static void grade_grazing(lq_panels *panels, double theta) {
+    const double elevation = 0.5 * pi - theta;
+    if (elevation > 0.0) lq_panels_grade(panels, 0.5 * (0.5 * pi + theta), fmax(elevation, 1e-9), 5.0, true);
+}
+
+static void make_panels(const view *w, const lq_panels *extra, lq_panels *panels) {
+    const double from = fmax(w->theta - 0.5 * pi, 0.0);
+    lq_panels_start(panels, from, 0.5 * pi);
+    if (from > 0.0) panels->singular[0] = true; /* the range of azimuth opens like a square root */
+    add_horizon_crossings(panels, w->theta);
+    lq_panels_grade(panels, w->theta, w->alpha, 4.0, false);
+    grade_grazing(panels, w->theta);
+    lq_panels_add(panels, w->theta, false);
+    if (!extra) return;
+    for (int i = 0; i < extra->count; i++) lq_panels_add(panels, extra->at[i], extra->singular[i]);
+}
+
+/* chi/2 of the azimuth with cos psi = `cos_psi`, clamped to [0, pi/2]. */
+static double half_chi(double cos_psi, double lambda) {
+    if (cos_psi >= 1.0) return 0.0;
+    if (cos_psi <= -1.0) return 0.5 * pi;
+    return atan2(sqrt(1.0 - cos_psi), lambda * sqrt(1.0 + cos_psi));
+}
+
+/* cos psi where cos b v_z + sin b sin_v cos psi = 0; the sign of infinity says which side all psi are. */
+static double crossing(double cos_b, double sin_b, const view *w) {
+    const double level = -cos_b * w->v_z, reach = sin_b * w->sin_v;
+    if (reach > 0.0) return level / reach;
+    return level < 0.0 ? -2.0 : 2.0;
+}
+
+/* Cubic map towards a singular end: the reflected cosine vanishes there, linearly, and what is integrated
+ * (masking, interpolation in a root of the cosine) changes over cosines as small as the incident one.
+ * Measured on E(mu, alpha): 10 x smaller errors than with the quadratic map at the same nodes. */
+static int piece_nodes(const piece *p, const lq_gauss *rule, double *h, double *dh) {
+    const double width = p->to - p->from;
+    if (!(width > 0.0)) return 0;
+    for (int i = 0; i < rule->count; i++) {
+        const double u = rule->node[i], w = rule->weight[i] * width;
+        const double to_end = 1.0 - u;
+        if (p->singular_from) {
+            h[i] = p->from + width * u * u * u;
+            dh[i] = 3.0 * u * u * w;
+        } else if (p->singular_to) {
+            h[i] = p->to - width * to_end * to_end * to_end;
+            dh[i] = 3.0 * to_end * to_end * w;
+        } else {
+            h[i] = p->from + width * u;
+            dh[i] = w;
+        }
+    }
+    return rule->count;
+}
+
+static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
+    fan->d = d;
+    fan->cos_d = cos(d);
+    fan->sin_d = sin(d);
+    const double cos_2d = (fan->cos_d - fan->sin_d) * (fan->cos_d + fan->sin_d);
+    const double sin_2d = 2.0 * fan->sin_d * fan->cos_d;
+
+    /* GGX has 1/(1 - k^2 m_z^2)^2, k^2 = 1 - alpha^2; lambda flattens the nearer pole, m_z = 1/k. */
+    const double a2 = w->alpha * w->alpha, k = sqrt(fmax(1.0 - a2, 0.0)), gap = a2 / (1.0 + k);
+    const double near = sin(0.5 * (d - w->theta)), far = sin(0.5 * (d + w->theta));
+    lq_fan_constants c;
+    c.lambda2 = (gap + 2.0 * k * near * near) / (gap + 2.0 * k * far * far);
+    c.lambda = sqrt(c.lambda2);
+    c.tilt0 = 2.0 * near * near;
+    c.tilt1 = 2.0 * fan->sin_d * w->sin_v;
+    c.mirror0 = cos_2d * w->v_z;
+    c.mirror1 = sin_2d;
+    c.sin_v = w->sin_v;
+
+    const double horizon = half_chi(crossing(cos_2d, sin_2d, w), c.lambda);
+    const double upright = half_chi(crossing(fan->cos_d, fan->sin_d, w), c.lambda);
+    const piece above = {0.0, fmin(horizon, upright), false, horizon <= upright};
+    const piece below = {horizon, upright, true, false};
+
+    double h[LQ_FAN_MAX], cos2[LQ_FAN_MAX], sin2[LQ_FAN_MAX], density[LQ_FAN_MAX];
+    fan->up = piece_nodes(&above, w->inner, h, fan->weight);
+    fan->count = fan->up + piece_nodes(&below, w->inner, h + fan->up, fan->weight + fan->up);
+    w->kernels->place_facets(&c, (size_t)fan->count, h, fan->weight, fan->mirror, fan->e_z, cos2, sin2);
+    w->ndf->density(w->ndf, w->alpha, (size_t)fan->count, cos2, sin2, density);
+    /* Twice: both signs of the azimuth. */
+    const double scale = 2.0 * weight * fan->cos_d * fan->sin_d;
+    for (int i = 0; i < fan->count; i++) fan->weight[i] *= scale * density[i];
+}
+
+void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, const lq_facet_rule *rule,
+                     const lq_panels *extra, lq_fan_visitor *visit, void *user) {
+    const view w = {ndf, alpha, v_z, sin_v, atan2(sin_v, v_z), &rule->inner, lq_microfacet_kernels_get()};
+    lq_panels panels;
+    make_panels(&w, extra, &panels);
+    lq_fan fan;
+    for (int p = 0; p + 1 < panels.count; p++)
+        for (int i = 0; i < rule->outer.count; i++) {
+            double slope;
+            const double d = lq_panels_map(&panels, p, rule->outer.node[i], &slope);
+            fan_make(&w, d, rule->outer.weight[i] * slope, &fan);
+            visit(user, &fan);
+        }
+}

@@ -1,0 +1,51 @@
+/* Quadrature over the facets that a direction sees.
+ *
+ * The direction v is the one the light comes FROM (v = -omega): above the horizon for a ray that goes down,
+ * below it for one that goes up. Facets are counted in polar coordinates around v,
+ *     m = cos d v + sin d e(psi),     dm = sin d dd dpsi,
+ * because everything Fresnel depends on d alone: a critical angle is one break point of the outer
+ * integral, exact, and one inner integral serves every material. Reflection keeps the azimuth,
+ *     omega_r = cos 2d v + sin 2d e(psi),
+ * and refraction too, with the angle d - t in place of 2d and a minus sign in front.
+ *
+ * Two choices make it converge geometrically for any roughness (docs/theory.md, "Facet quadrature"):
+ *  - the azimuth is integrated in chi, tan(psi/2) = lambda tan(chi/2), lambda chosen so that the pole of
+ *    GGX becomes constant: a narrow lobe is as cheap as a wide one;
+ *  - the panels of d grow geometrically away from the peak d = theta.
+ */
+#ifndef LACQUER_MICROFACET_FACETS_H
+#define LACQUER_MICROFACET_FACETS_H
+
+#include "microfacet/ndf.h"
+#include "microfacet/panels.h"
+
+#include <stddef.h>
+
+enum { LQ_FAN_MAX = 128 };
+
+/* The facets at one angle d from v, above and below the split of the azimuth. */
+typedef struct lq_fan {
+    double d, cos_d, sin_d;
+    int up;    /* facets [0, up) reflect above the horizon, ... */
+    int count; /* ... facets [up, count) below it */
+    /* Of each facet: |cosine| of the reflected direction, the horizontal part v.z-free component of e(psi)
+     * (e_z = sin theta cos psi), and its weight (v.m) D(m) dm, not normalised. */
+    _Alignas(64) double mirror[LQ_FAN_MAX];
+    _Alignas(64) double e_z[LQ_FAN_MAX];
+    _Alignas(64) double weight[LQ_FAN_MAX];
+} lq_fan;
+
+typedef void lq_fan_visitor(void *user, const lq_fan *fan);
+
+typedef struct lq_facet_rule {
+    lq_gauss outer; /* nodes per panel of d */
+    lq_gauss inner; /* nodes per piece of azimuth: two pieces at most, up to LQ_FAN_MAX / 2 each */
+} lq_facet_rule;
+
+/* Visit every fan seen from v at height v_z in [-1,1] (v_z = 0 counts as above), sin_v = sqrt(1 - v_z^2),
+ * alpha in (0,1]. `extra` (may be NULL) holds further break points in d on [0, pi/2]: those of the Fresnel
+ * curves. The sum of all weights is sigma(v) to the accuracy of the rule. */
+void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, const lq_facet_rule *rule,
+                     const lq_panels *extra, lq_fan_visitor *visit, void *user);
+
+#endif

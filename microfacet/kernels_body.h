@@ -1,0 +1,74 @@
+/* The loops behind kernels.h. LQ_KERNELS is the name of the function that returns this copy. */
+#include "microfacet/fresnel_formula.h"
+#include "microfacet/kernels.h"
+
+#include <math.h>
+
+static void conductors(double cos_i, size_t count, const double *restrict n, const double *restrict kappa,
+                       double *restrict reflectance) {
+    for (size_t i = 0; i < count; i++) reflectance[i] = lq_conductor_reflectance(cos_i, n[i], kappa[i]);
+}
+
+/* D = a^2 / (pi (a^2 cos^2 + sin^2)^2) */
+static void ggx_density(double alpha, size_t count, const double *restrict cos2, const double *restrict sin2,
+                        double *restrict d) {
+    const double a2 = alpha * alpha, scale = 0.31830988618379067154 * a2;
+    for (size_t i = 0; i < count; i++) {
+        const double q = a2 * cos2[i] + sin2[i];
+        d[i] = scale / (q * q);
+    }
+}
+
+/* mu Lambda = (sqrt(mu^2 + a^2 sin^2) - mu) / 2, as the quotient that keeps its digits for small a. */
+static void ggx_areas_below(double alpha, size_t count, const double *restrict mu, double *restrict area) {
+    const double a2 = alpha * alpha;
+    for (size_t i = 0; i < count; i++) {
+        const double stretch2 = a2 * (1.0 - mu[i]) * (1.0 + mu[i]);
+        const double sum = sqrt(mu[i] * mu[i] + stretch2) + mu[i];
+        area[i] = sum > 0.0 ? 0.5 * stretch2 / sum : 0.0;
+    }
+}
+
+/* sin h on [0, pi/2] by its Taylor series, absolute error below 1e-17. */
+enum { SIN_TERMS = 11 };
+static const double sin_series[SIN_TERMS] = {
+    1.0,
+    -1.6666666666666666667e-1,
+    8.3333333333333333333e-3,
+    -1.9841269841269841270e-4,
+    2.7557319223985890653e-6,
+    -2.5052108385441718775e-8,
+    1.6059043836821614599e-10,
+    -7.6471637318198164759e-13,
+    2.8114572543455207632e-15,
+    -8.2206352466243297170e-18,
+    1.9572941063391261231e-20,
+};
+
+static void place_facets(const lq_fan_constants *k, size_t count, const double *restrict h,
+                         double *restrict dpsi, double *restrict mirror, double *restrict e_z,
+                         double *restrict cos2, double *restrict sin2) {
+    const double lambda = k->lambda, lambda2 = k->lambda2, sin_v = k->sin_v;
+    const double tilt0 = k->tilt0, tilt1 = k->tilt1, mirror0 = k->mirror0, mirror1 = k->mirror1;
+    for (size_t i = 0; i < count; i++) {
+        const double h2 = h[i] * h[i];
+        double s = sin_series[SIN_TERMS - 1];
+        for (int t = SIN_TERMS - 2; t >= 0; t--) s = s * h2 + sin_series[t];
+        s *= h[i];
+        const double s2 = s * s, rest = 1.0 - s2, c2 = rest > 0.0 ? rest : 0.0;
+        const double inverse = 1.0 / (c2 + lambda2 * s2);
+        const double half = lambda2 * s2 * inverse; /* sin^2(psi/2) */
+        const double tilt = tilt0 + tilt1 * half;
+        e_z[i] = sin_v * (1.0 - 2.0 * half);
+        const double cosine = fabs(mirror0 + mirror1 * e_z[i]);
+        mirror[i] = cosine < 1.0 ? cosine : 1.0;
+        cos2[i] = (1.0 - tilt) * (1.0 - tilt);
+        sin2[i] = tilt * (2.0 - tilt);
+        dpsi[i] *= 2.0 * lambda * inverse;
+    }
+}
+
+const lq_microfacet_kernels *LQ_KERNELS(void) {
+    static const lq_microfacet_kernels kernels = {conductors, ggx_density, ggx_areas_below, place_facets};
+    return &kernels;
+}

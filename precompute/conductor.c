@@ -1,0 +1,525 @@
+/* The deterministic solver of conductor.h: scatter operators, a batched Gauss-Seidel, refinement. */
+#include "precompute/conductor.h"
+
+#include "microfacet/fresnel.h"
+#include "precompute/first_bounce.h"
+#include "precompute/kernels.h"
+#include "tables/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* ---------------------------------------------------------------------------- resolutions */
+
+/* Node cosines, quadrature nodes per panel of d, and per piece of azimuth. The quadrature grows with the
+ * nodes because it integrates their basis: at a critical angle the high Chebyshev moments do not fade, and an
+ * aliased one costs more than it resolves (measured: 2e-5 instead of 1e-6 at n = 0.7, alpha = 0.1). */
+typedef struct level {
+    int nodes, outer, inner;
+} level;
+
+static const level levels[] = {{12, 8, 16},  {16, 10, 16}, {24, 12, 24}, {32, 16, 24},
+                               {48, 24, 32}, {64, 32, 40}, {96, 40, 56}, {128, 48, 64}};
+enum { LEVELS = sizeof levels / sizeof levels[0] };
+
+/* ---------------------------------------------------------------------------------- nodes */
+
+/* Interpolation nodes are Chebyshev points of x, which is logarithmic in the cosine down to alpha and linear
+ * below: energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take the tangent
+ * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
+ */
+static lq_cosine_map map_down(double alpha) {
+    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(1.0 / alpha), 0};
+}
+
+static lq_cosine_map map_up(double alpha) {
+    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(2.0 / alpha), 1};
+}
+
+static double map_inverse(const lq_cosine_map *map, double x) {
+    const double t = sinh((x + 1.0) / map->scale) / map->inverse_alpha;
+    return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
+}
+
+static double chebyshev_angle(int nodes, int i) {
+    return pi * (nodes - 1 - i + 0.5) / nodes;
+}
+
+/* basis[m * nodes + i]: node values to Chebyshev coefficients. */
+static void chebyshev_basis(int nodes, double *basis) {
+    for (int m = 0; m < nodes; m++)
+        for (int i = 0; i < nodes; i++)
+            basis[m * nodes + i] = (m ? 2.0 : 1.0) / nodes * cos(m * chebyshev_angle(nodes, i));
+}
+
+/* ------------------------------------------------------------------------------ operators */
+
+typedef struct operators {
+    int nodes, curves;
+    size_t stride;
+    double mu_down[LQ_NODES_MAX], mu_up[LQ_NODES_MAX];
+    double a_down[LQ_NODES_MAX], a_up[LQ_NODES_MAX];
+    double *dd, *du, *uu; /* as in lq_sylvester */
+    double *basis;
+} operators;
+
+static void operators_free(operators *o) {
+    free(o->dd);
+    free(o->du);
+    free(o->uu);
+    free(o->basis);
+}
+
+static double *zeros(size_t count) {
+    double *p = NULL;
+    if (posix_memalign((void **)&p, 64, count * sizeof(double))) return NULL;
+    memset(p, 0, count * sizeof(double));
+    return p;
+}
+
+/* Scatter moments of one direction: for every curve the Chebyshev moments of where its facets send light. */
+typedef struct scatter {
+    const lq_curves *curves;
+    const lq_solver_kernels *kernels;
+    lq_cosine_map down, up;
+    int nodes;
+    double total;
+    double *to_down, *to_up; /* [curve * nodes + moment] */
+} scatter;
+
+static void scatter_fan(void *user, const lq_fan *fan) {
+    scatter *s = user;
+    double curve[LQ_CURVES_MAX], moment[LQ_NODES_MAX];
+    const size_t up = (size_t)fan->up, down = (size_t)(fan->count - fan->up);
+    lq_curves_at(s->curves, fan->cos_d, curve);
+    if (up) {
+        memset(moment, 0, sizeof moment);
+        s->kernels->moments(&s->up, up, fan->mirror, fan->weight, s->nodes, moment);
+        s->kernels->spread(s->curves->count, curve, s->nodes, moment, s->to_up);
+        s->total += moment[0];
+    }
+    if (down) {
+        memset(moment, 0, sizeof moment);
+        s->kernels->moments(&s->down, down, fan->mirror + up, fan->weight + up, s->nodes, moment);
+        s->kernels->spread(s->curves->count, curve, s->nodes, moment, s->to_down);
+        s->total += moment[0];
+    }
+}
+
+/* Row i of an operator from its moments: P_ij = sum_m moment_m basis_mj / total. Element (i, j) of curve k
+ * goes to out[k * stride + i * row + j * column]. */
+static void write_row(const operators *o, const double *moments, double total, int i, int row, int column,
+                      double *out) {
+    const int n = o->nodes;
+    for (int k = 0; k < o->curves; k++)
+        for (int j = 0; j < n; j++) {
+            double sum = 0.0;
+            for (int m = 0; m < n; m++) sum += moments[k * n + m] * o->basis[m * n + j];
+            out[(size_t)k * o->stride + (size_t)(i * row + j * column)] = sum / total;
+        }
+}
+
+static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const lq_facet_rule *rule,
+                              scatter *s) {
+    const size_t size = (size_t)s->curves->count * (size_t)s->nodes * sizeof(double);
+    memset(s->to_down, 0, size);
+    memset(s->to_up, 0, size);
+    s->total = 0.0;
+    lq_facets_visit(ndf, alpha, v_z, lq_sine(fabs(v_z)), rule, &s->curves->panels, scatter_fan, s);
+}
+
+static void place_nodes(operators *o, const lq_ndf *ndf, double alpha) {
+    const lq_cosine_map down = map_down(alpha), up = map_up(alpha);
+    for (int i = 0; i < o->nodes; i++) {
+        const double x = cos(chebyshev_angle(o->nodes, i));
+        o->mu_down[i] = map_inverse(&down, x);
+        o->mu_up[i] = map_inverse(&up, x);
+        o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->mu_down[i]);
+        o->a_up[i] = lq_lambda(ndf, alpha, o->mu_up[i]);
+    }
+}
+
+static bool operators_make(operators *o, const lq_ndf *ndf, double alpha, const lq_curves *curves,
+                           const level *l) {
+    const size_t n = (size_t)l->nodes, k = (size_t)curves->count;
+    *o = (operators){.nodes = l->nodes, .curves = curves->count, .stride = (n * n + 7) / 8 * 8};
+    o->dd = zeros(k * o->stride);
+    o->du = zeros(k * o->stride);
+    o->uu = zeros(k * o->stride);
+    o->basis = zeros(n * n);
+    scatter s = {curves, lq_solver_kernels_get(), map_down(alpha), map_up(alpha), l->nodes, 0.0, NULL, NULL};
+    s.to_down = zeros(k * n);
+    s.to_up = zeros(k * n);
+    const bool ok = o->dd && o->du && o->uu && o->basis && s.to_down && s.to_up;
+    if (ok) {
+        lq_facet_rule rule;
+        lq_gauss_make(&rule.outer, l->outer);
+        lq_gauss_make(&rule.inner, l->inner);
+        chebyshev_basis(l->nodes, o->basis);
+        place_nodes(o, ndf, alpha);
+        for (int i = 0; i < l->nodes; i++) {
+            scatter_direction(ndf, alpha, o->mu_down[i], &rule, &s);
+            write_row(o, s.to_down, s.total, i, l->nodes, 1, o->dd);
+            write_row(o, s.to_up, s.total, i, l->nodes, 1, o->du);
+            scatter_direction(ndf, alpha, -o->mu_up[i], &rule, &s);
+            write_row(o, s.to_up, s.total, i, 1, l->nodes, o->uu);
+        }
+    }
+    free(s.to_down);
+    free(s.to_up);
+    if (!ok) operators_free(o);
+    return ok;
+}
+
+/* -------------------------------------------------------------------------------- readout */
+
+typedef struct readout {
+    lq_readout at;
+    double *escaping, *remaining, *weights;
+} readout;
+
+static void readout_free(readout *r) {
+    free(r->escaping);
+    free(r->remaining);
+    free(r->weights);
+}
+
+/* Interpolation weights from the nodes to cosine mu: sum_m T_m(x) basis_mi. */
+static void interpolation_weights(const operators *o, const lq_cosine_map *map, double mu, double *weights) {
+    const double x = fmin(map->scale * asinh(mu * map->inverse_alpha) - 1.0, 1.0), angle = acos(x);
+    for (int i = 0; i < o->nodes; i++) {
+        weights[i] = 0.0;
+        for (int m = 0; m < o->nodes; m++) weights[i] += cos(m * angle) * o->basis[m * o->nodes + i];
+    }
+}
+
+static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, double alpha,
+                         const lq_curves *curves, const level *l, const double *mu, size_t count) {
+    const size_t k = (size_t)curves->count, n = (size_t)l->nodes;
+    const lq_cosine_map map = map_down(alpha);
+    *r = (readout){{0}, zeros(count * k), zeros(count * k), zeros(count * n)};
+    if (!r->escaping || !r->remaining || !r->weights) {
+        readout_free(r);
+        return false;
+    }
+    lq_facet_rule rule;
+    lq_gauss_make(&rule.outer, l->outer);
+    lq_gauss_make(&rule.inner, l->inner);
+    for (size_t m = 0; m < count; m++) {
+        lq_first_bounce(ndf, alpha, LQ_CORRELATED, mu[m], curves, &rule, r->escaping + m * k,
+                        r->remaining + m * k);
+        interpolation_weights(o, &map, mu[m], r->weights + m * n);
+    }
+    r->at = (lq_readout){count, r->escaping, r->remaining, r->weights};
+    return true;
+}
+
+/* -------------------------------------------------------------------------------- batches */
+
+/* Work space of the batches of one level. */
+typedef struct batch {
+    lq_sylvester s;
+    lq_v8 *work, *coefficients, *ratio, *energy;
+} batch;
+
+static void batch_free(batch *b) {
+    free(b->work);
+    free(b->coefficients);
+    free(b->ratio);
+    free(b->energy);
+}
+
+static lq_v8 *vectors(size_t count) {
+    return (lq_v8 *)(void *)zeros(count * LQ_LANES);
+}
+
+static bool batch_make(batch *b, const operators *o, size_t mu_count) {
+    *b = (batch){.work = vectors(4 * o->stride),
+                 .coefficients = vectors((size_t)o->curves),
+                 .ratio = vectors((size_t)o->nodes),
+                 .energy = vectors(mu_count)};
+    b->s = (lq_sylvester){.nodes = o->nodes,
+                          .curves = o->curves,
+                          .stride = o->stride,
+                          .dd = o->dd,
+                          .du = o->du,
+                          .uu = o->uu,
+                          .a_down = o->a_down,
+                          .a_up = o->a_up,
+                          .coefficients = b->coefficients,
+                          .down = b->work,
+                          .source = b->work + o->stride,
+                          .up = b->work + 2 * o->stride,
+                          .r = b->work + 3 * o->stride};
+    if (b->work && b->coefficients && b->ratio && b->energy) return true;
+    batch_free(b);
+    return false;
+}
+
+/* The coefficients of up to LQ_LANES materials; unused lanes get total reflection. */
+static void batch_load(batch *b, const lq_conductors *materials, const size_t *which, size_t count) {
+    for (int k = 0; k < b->s.curves; k++)
+        for (size_t l = 0; l < LQ_LANES; l++)
+            b->coefficients[k][l] =
+                l < count ? materials->coefficients[which[l] * (size_t)b->s.curves + (size_t)k] : 0.0;
+}
+
+/* Gauss-Seidel in order of rising cosines follows the light: grazing rays first, and every reflection only
+ * raises a ray, so that one sweep would do were the basis local. It takes 4 to 12. */
+enum { SWEEPS_MAX = 400 };
+
+static void batch_solve(batch *b, const lq_solver_kernels *kernels, const lq_readout *at, double settle) {
+    kernels->assemble(&b->s);
+    memset(b->s.r, 0, b->s.stride * sizeof(lq_v8));
+    for (int sweep = 0; sweep < SWEEPS_MAX && kernels->sweep(&b->s) > settle; sweep++) continue;
+    kernels->survival(&b->s, b->ratio);
+    kernels->read(at, &b->s, b->ratio, b->energy);
+}
+
+/* ----------------------------------------------------------------------------- refinement */
+
+/* Everything lq_conductor_energies carries from level to level. */
+typedef struct refinement {
+    const lq_conductors *materials;
+    const double *mu;
+    size_t mu_count;
+    size_t *active; /* materials not yet within tolerance, ascending */
+    size_t active_count;
+    double *energy;
+    double *change; /* of each material, from the level before */
+    double tolerance;
+} refinement;
+
+static void keep(refinement *r, size_t material, const lq_v8 *energy, size_t lane) {
+    double change = 0.0;
+    for (size_t m = 0; m < r->mu_count; m++) {
+        const double now = fmin(fmax(energy[m][lane], 0.0), 1.0);
+        double *kept = r->energy + material * r->mu_count + m;
+        change = fmax(change, fabs(now - *kept));
+        *kept = now;
+    }
+    r->change[material] = change;
+}
+
+/* Two levels that agree by accident would make the estimate too small. It is twice the largest difference
+ * over many cosines, and never below a tenth of what was asked for. */
+static double estimate_of(const refinement *r, size_t material) {
+    return fmax(2.0 * r->change[material], 0.1 * r->tolerance);
+}
+
+static bool solve_level(refinement *r, const lq_ndf *ndf, double alpha, const level *l) {
+    operators o;
+    readout read;
+    batch b;
+    const lq_solver_kernels *kernels = lq_solver_kernels_get();
+    if (!operators_make(&o, ndf, alpha, &r->materials->curves, l)) return false;
+    bool ok = readout_make(&read, &o, ndf, alpha, &r->materials->curves, l, r->mu, r->mu_count);
+    if (ok) {
+        ok = batch_make(&b, &o, r->mu_count);
+        for (size_t first = 0; ok && first < r->active_count; first += LQ_LANES) {
+            const size_t count = r->active_count - first < LQ_LANES ? r->active_count - first : LQ_LANES;
+            batch_load(&b, r->materials, r->active + first, count);
+            batch_solve(&b, kernels, &read.at, fmin(1e-4 * r->tolerance, 1e-11));
+            for (size_t lane = 0; lane < count; lane++) keep(r, r->active[first + lane], b.energy, lane);
+        }
+        if (ok) batch_free(&b);
+        readout_free(&read);
+    }
+    operators_free(&o);
+    return ok;
+}
+
+static void retire(refinement *r) {
+    size_t left = 0;
+    for (size_t i = 0; i < r->active_count; i++)
+        if (estimate_of(r, r->active[i]) > r->tolerance) r->active[left++] = r->active[i];
+    r->active_count = left;
+}
+
+static bool refine(refinement *r, const lq_ndf *ndf, double alpha) {
+    r->active_count = r->materials->count;
+    for (size_t m = 0; m < r->active_count; m++) r->active[m] = m;
+    for (int i = 0; i < LEVELS && r->active_count; i++) {
+        if (!solve_level(r, ndf, alpha, &levels[i])) return false;
+        if (i > 0) retire(r);
+    }
+    return true;
+}
+
+static void smooth_energies(const lq_conductors *materials, const double *mu, size_t mu_count,
+                            double *energy) {
+    for (size_t i = 0; i < materials->count; i++)
+        for (size_t m = 0; m < mu_count; m++)
+            energy[i * mu_count + m] = lq_fresnel_conductor(mu[m], materials->n[i], materials->kappa[i]);
+}
+
+static lq_status solve_slice(const lq_ndf *ndf, double alpha, const lq_conductors *materials,
+                             const double *mu, size_t mu_count, double tolerance, double *energy,
+                             double *estimate, lq_error *error) {
+    refinement r = {.materials = materials, .mu = mu, .mu_count = mu_count, .energy = energy};
+    r.tolerance = tolerance;
+    r.active = malloc(materials->count * sizeof *r.active);
+    r.change = malloc(materials->count * sizeof *r.change);
+    const bool ok = r.active && r.change && refine(&r, ndf, alpha);
+    *estimate = 0.0;
+    for (size_t m = 0; ok && m < materials->count; m++) *estimate = fmax(*estimate, estimate_of(&r, m));
+    *estimate += materials->missed;
+    free(r.active);
+    free(r.change);
+    return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory to solve %zu materials", materials->count);
+}
+
+/* Cosines that are always watched: fewer would let two levels agree by accident. */
+enum { PROBES = 10 };
+
+static void place_probes(double alpha, double *mu) {
+    const double spread[PROBES] = {0.01, 0.1, 0.3, 1.0, 3.0, 10.0};
+    const double fixed[] = {0.15, 0.4, 0.7, 1.0};
+    for (int i = 0; i < 6; i++) mu[i] = fmin(spread[i] * alpha, 1.0);
+    for (int i = 0; i < 4; i++) mu[6 + i] = fixed[i];
+}
+
+/* Few cosines: solve them together with the probes. */
+static lq_status solve_with_probes(const lq_ndf *ndf, double alpha, const lq_conductors *materials,
+                                   const double *mu, size_t mu_count, double tolerance, double *energy,
+                                   double *estimate, lq_error *error) {
+    const size_t all = mu_count + PROBES;
+    double *cosines = malloc(all * sizeof(double));
+    double *energies = malloc(all * materials->count * sizeof(double));
+    lq_status status = LQ_NO_MEMORY;
+    if (cosines && energies) {
+        memcpy(cosines, mu, mu_count * sizeof(double));
+        place_probes(alpha, cosines + mu_count);
+        status = solve_slice(ndf, alpha, materials, cosines, all, tolerance, energies, estimate, error);
+        for (size_t m = 0; m < materials->count; m++)
+            memcpy(energy + m * mu_count, energies + m * all, mu_count * sizeof(double));
+    } else {
+        lq_fail(error, status, "no memory to solve %zu materials", materials->count);
+    }
+    free(cosines);
+    free(energies);
+    return status;
+}
+
+lq_status lq_conductor_energies(const lq_ndf *ndf, double alpha, const lq_conductors *materials,
+                                const double *mu, size_t mu_count, double tolerance, double *energy,
+                                double *estimate, lq_error *error) {
+    if (alpha < LQ_SMOOTH_ALPHA) {
+        *estimate = alpha > 0.0 ? LQ_SMOOTH_ERROR : 1e-15;
+        smooth_energies(materials, mu, mu_count, energy);
+        return LQ_OK;
+    }
+    return (mu_count < 2 * PROBES ? solve_with_probes : solve_slice)(ndf, alpha, materials, mu, mu_count,
+                                                                     tolerance, energy, estimate, error);
+}
+
+/* ------------------------------------------------------------------- orders of scattering */
+
+/* What one more hit makes of R: R'_ij = (a_d P_dd R + R a_u P_uu)_ij / (a_d,i + a_u,j). The batch holds the
+ * scaled operators; one lane of it is one material. */
+static void next_order(const lq_sylvester *s, const double *r, double *next) {
+    const int n = s->nodes;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = 0.0;
+            for (int k = 0; k < n; k++)
+                sum += s->down[i * n + k][0] * r[k * n + j] + r[i * n + k] * s->up[j * n + k][0];
+            next[i * n + j] = sum / (s->a_down[i] + s->a_up[j]);
+        }
+}
+
+/* Energies of one order at the readout's only cosine: its remaining flux times the interpolated share. */
+static double read_order(const lq_sylvester *s, const lq_readout *at, const double *r) {
+    const int n = s->nodes;
+    double remaining = at->remaining[0], share = 0.0;
+    for (int k = 1; k < s->curves; k++) remaining -= s->coefficients[k][0] * at->remaining[k];
+    for (int i = 0; i < n; i++) {
+        double order = 0.0, all = 0.0;
+        for (int j = 0; j < n; j++) {
+            order += r[i * n + j];
+            all += s->down[i * n + j][0] + s->a_up[j] / (s->a_down[i] + s->a_up[j]) * s->source[i * n + j][0];
+        }
+        if (all > 0.0) share += at->weights[i] * order * s->a_down[i] / all;
+    }
+    return remaining * share;
+}
+
+static bool run_orders(const lq_sylvester *s, const lq_readout *at, size_t orders, double *energies) {
+    const size_t n2 = (size_t)s->nodes * (size_t)s->nodes;
+    double *r = malloc(n2 * sizeof *r), *next = malloc(n2 * sizeof *next);
+    const bool ok = r && next;
+    if (ok) {
+        energies[0] = at->escaping[0];
+        for (int k = 1; k < s->curves; k++) energies[0] -= s->coefficients[k][0] * at->escaping[k];
+        for (int i = 0; i < s->nodes; i++)
+            for (int j = 0; j < s->nodes; j++)
+                r[i * s->nodes + j] = s->source[i * s->nodes + j][0] / (s->a_down[i] + s->a_up[j]);
+    }
+    for (size_t order = 1; ok && order < orders; order++) {
+        next_order(s, r, next);
+        energies[order] = fmax(read_order(s, at, next), 0.0);
+        double *swap = r;
+        r = next;
+        next = swap;
+    }
+    free(r);
+    free(next);
+    return ok;
+}
+
+lq_status lq_conductor_orders(const lq_ndf *ndf, double alpha, const lq_conductors *material, double mu,
+                              size_t orders, double *energies, lq_error *error) {
+    for (size_t i = 0; i < orders; i++) energies[i] = 0.0;
+    if (orders == 0) return LQ_OK;
+    if (alpha < LQ_SMOOTH_ALPHA) {
+        smooth_energies(material, &mu, 1, energies);
+        return LQ_OK;
+    }
+    const level l = {64, 32, 40};
+    const size_t only = 0;
+    operators o;
+    readout read;
+    batch b;
+    bool ok = operators_make(&o, ndf, alpha, &material->curves, &l);
+    if (ok) {
+        ok = readout_make(&read, &o, ndf, alpha, &material->curves, &l, &mu, 1);
+        if (ok && (ok = batch_make(&b, &o, 1))) {
+            batch_load(&b, material, &only, 1);
+            lq_solver_kernels_get()->assemble(&b.s);
+            ok = run_orders(&b.s, &read.at, orders, energies);
+            batch_free(&b);
+        }
+        readout_free(&read);
+        operators_free(&o);
+    }
+    return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu orders of scattering", orders);
+}
+
+/* ------------------------------------------------------------------------------ materials */
+
+lq_status lq_conductors_make(lq_conductors *materials, const double *n, const double *kappa, size_t count,
+                             double accuracy, lq_error *error) {
+    *materials = (lq_conductors){.count = count, .n = n, .kappa = kappa};
+    double *wide = malloc(count * LQ_CURVES_MAX * sizeof(double));
+    if (!wide) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu materials", count);
+    lq_status status =
+        lq_curves_basis(&materials->curves, n, kappa, count, accuracy, wide, &materials->missed, error);
+    if (status == LQ_OK) {
+        const size_t curves = (size_t)materials->curves.count;
+        for (size_t m = 0; m < count; m++)
+            memmove(wide + m * curves, wide + m * LQ_CURVES_MAX, curves * sizeof(double));
+        double *tight = realloc(wide, count * curves * sizeof(double));
+        materials->coefficients = tight ? tight : wide;
+    } else {
+        free(wide);
+    }
+    return status;
+}
+
+void lq_conductors_free(lq_conductors *materials) {
+    free(materials->coefficients);
+    materials->coefficients = NULL;
+}

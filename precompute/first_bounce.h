@@ -1,0 +1,30 @@
+/* First bounce: the light that a rough interface sends back after one hit, for many Fresnel curves at once.
+ *
+ *     escaping(mu)  = integral f(omega.m) D_omega(m) G dm          (B18 eq. 2 with F = f)
+ *     remaining(mu) = integral f(omega.m) D_omega(m) (1 - G) dm    what goes on to hit again
+ *
+ * with G = (1 + Lambda_i)/(1 + Lambda_i + Lambda_o) for height-correlated masking, 1/(1 + Lambda_o) for
+ * separable masking, and 0 where the reflection goes down. For f = 1 the two add up to 1 exactly.
+ */
+#ifndef LACQUER_PRECOMPUTE_FIRST_BOUNCE_H
+#define LACQUER_PRECOMPUTE_FIRST_BOUNCE_H
+
+#include "lacquer.h"
+#include "microfacet/facets.h"
+#include "precompute/curves.h"
+
+/* Roughness below which an interface is treated as smooth: every directional energy is within
+ * LQ_SMOOTH_ERROR of its value at alpha = 0, both limits included (theory.md, "Small roughness"). */
+#define LQ_SMOOTH_ALPHA 1e-8
+#define LQ_SMOOTH_ERROR 1e-7
+
+/* Both integrals of every curve at cosine mu in [0,1], alpha in (0,1]; arrays of curves->count. */
+void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
+                     const lq_facet_rule *rule, double *escaping, double *remaining);
+
+/* `escaping` for `count` cosines, [mu * curves->count + k], at increasing resolution until two in a row
+ * differ by at most `tolerance` everywhere. Returns the last difference: the error estimate. */
+double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking masking, const double *mu,
+                                 size_t count, const lq_curves *curves, double tolerance, double *escaping);
+
+#endif

@@ -1,0 +1,70 @@
+/* The hot loops of the solvers, built once per instruction set (see microfacet/kernels.h for how). */
+#ifndef LACQUER_PRECOMPUTE_KERNELS_H
+#define LACQUER_PRECOMPUTE_KERNELS_H
+
+#include <stddef.h>
+
+enum {
+    LQ_LANES = 8,       /* materials that are solved together */
+    LQ_NODES_MAX = 128, /* cosines of the finest level */
+    LQ_FACETS_MAX = 128 /* facets handed over at once */
+};
+
+/* Eight doubles in GCC's vector extension: one zmm register, two ymm or four xmm. Always passed by pointer:
+ * by value the calling convention would depend on the instruction set. */
+typedef double lq_v8 __attribute__((vector_size(64)));
+
+/* Where a cosine lies on the axis x in [-1,1] of the interpolation nodes:
+ *     x = scale asinh(t / alpha) - 1,
+ * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. */
+typedef struct lq_cosine_map {
+    double inverse_alpha, scale;
+    int half_angle;
+} lq_cosine_map;
+
+/* The equation of one batch, A_d R + R A_u = S (conductor.c). Arrays of vectors hold one material a lane. */
+typedef struct lq_sylvester {
+    int nodes, curves;
+    size_t stride; /* of one curve in the operators: nodes^2 rounded up to a multiple of 8 */
+    /* Scatter operators of every curve: dd, du as [curve * stride + i * nodes + j], uu transposed,
+     * [curve * stride + j * nodes + i], i the node scattered from and j the one scattered to. */
+    const double *dd, *du, *uu;
+    const double *a_down, *a_up;
+    const lq_v8 *coefficients; /* [curve] */
+    lq_v8 *down, *source, *up; /* work, stride each */
+    lq_v8 *r;                  /* nodes^2: start and solution */
+} lq_sylvester;
+
+/* Cosines at which a solution is read. */
+typedef struct lq_readout {
+    size_t count;
+    const double *escaping;  /* [mu * curves + k]: first bounce, leaves at once */
+    const double *remaining; /* likewise: first bounce, hits again */
+    const double *weights;   /* [mu * nodes + i]: interpolation from the nodes */
+} lq_readout;
+
+typedef struct lq_solver_kernels {
+    /* Chebyshev moments: moments[m] += sum_i weight[i] T_m(x(cosine[i])), m < count_moments. */
+    void (*moments)(const lq_cosine_map *map, size_t count, const double *cosine, const double *weight,
+                    int count_moments, double *moments);
+    /* Of the facets of a fan that reflect upwards, the weight that leaves at once: sum w G with
+     * G = area_in mu_o / (area_in mu_o + area mu_i), area[i] the facets that block direction i. */
+    double (*escaping)(double area_in, double mu_i, size_t count, const double *mu_o, const double *area,
+                       const double *weight);
+    /* sums[k * moments + m] += curve[k] * moment[m] */
+    void (*spread)(int curves, const double *curve, int moments, const double *moment, double *sums);
+    /* Operators of a batch from those of the curves; one Gauss-Seidel sweep, returning the largest change
+     * over all lanes; the fraction of the flux that hits twice or more that leaves, at every node; the
+     * energy at the cosines of a readout. */
+    void (*assemble)(const lq_sylvester *s);
+    double (*sweep)(const lq_sylvester *s);
+    void (*survival)(const lq_sylvester *s, lq_v8 *ratio);
+    void (*read)(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio, lq_v8 *energy);
+} lq_solver_kernels;
+
+const lq_solver_kernels *lq_solver_kernels_get(void);
+const lq_solver_kernels *lq_precompute_kernels_base(void);
+const lq_solver_kernels *lq_precompute_kernels_avx2(void);
+const lq_solver_kernels *lq_precompute_kernels_avx512(void);
+
+#endif

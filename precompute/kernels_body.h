@@ -1,0 +1,217 @@
+/* The loops behind kernels.h. LQ_KERNELS is the name of the function that returns this copy. */
+#include "precompute/kernels.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Natural logarithm of a positive normal number, to 2 ulp, in operations that vectorise: x = 2^e m with m in
+ * [1/sqrt 2, sqrt 2), log m = 2 artanh((m-1)/(m+1)). */
+static inline double log_positive(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    const uint64_t fraction = (bits & 0xfffffffffffffu) | 0x3ff0000000000000u;
+    const uint64_t biased = (bits >> 52) | 0x4330000000000000u; /* 2^52 + the biased exponent, as a double */
+    double m, e;
+    memcpy(&m, &fraction, sizeof m);
+    memcpy(&e, &biased, sizeof e);
+    e -= 4503599627370496.0 + 1023.0;
+    const double wide = m > 1.4142135623730951 ? 1.0 : 0.0;
+    e += wide;
+    m -= 0.5 * wide * m;
+    const double s = (m - 1.0) / (m + 1.0), s2 = s * s;
+    double p = 1.0 / 21.0;
+    for (int k = 19; k >= 1; k -= 2) p = p * s2 + 1.0 / k;
+    return e * 0.69314718055994530942 + 2.0 * s * p;
+}
+
+static void map_cosines(const lq_cosine_map *map, size_t count, const double *restrict cosine,
+                        double *restrict x) {
+    const double inverse = map->inverse_alpha, scale = map->scale;
+    const double half = map->half_angle ? 1.0 : 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double sine2 = (1.0 - cosine[i]) * (1.0 + cosine[i]);
+        const double t = 2.0 * cosine[i] / (1.0 + sqrt(sine2));
+        const double y = inverse * (cosine[i] + half * (t - cosine[i]));
+        x[i] = scale * log_positive(y + sqrt(y * y + 1.0)) - 1.0;
+    }
+}
+
+static void moments(const lq_cosine_map *map, size_t count, const double *cosine, const double *weight,
+                    int count_moments, double *out) {
+    double x[LQ_FACETS_MAX], w[LQ_FACETS_MAX];
+    lq_v8 sum[LQ_NODES_MAX];
+    const size_t padded = (count + LQ_LANES - 1) / LQ_LANES * LQ_LANES;
+    map_cosines(map, count, cosine, x);
+    for (size_t i = 0; i < padded; i++) w[i] = i < count ? weight[i] : 0.0;
+    for (size_t i = count; i < padded; i++) x[i] = 0.0;
+    memset(sum, 0, (size_t)count_moments * sizeof sum[0]);
+    for (size_t i = 0; i < padded; i += LQ_LANES) {
+        lq_v8 two_x, before, now;
+        memcpy(&now, x + i, sizeof now);
+        memcpy(&before, w + i, sizeof before);
+        /* The recurrence of T_m, started from the weight instead of 1. */
+        two_x = now + now;
+        now *= before;
+        sum[0] += before;
+        for (int m = 1; m < count_moments; m++) {
+            sum[m] += now;
+            const lq_v8 next = two_x * now - before;
+            before = now;
+            now = next;
+        }
+    }
+    for (int m = 0; m < count_moments; m++) {
+        double total = 0.0;
+        for (int l = 0; l < LQ_LANES; l++) total += sum[m][l];
+        out[m] += total;
+    }
+}
+
+static double escaping(double area_in, double mu_i, size_t count, const double *restrict mu_o,
+                       const double *restrict area, const double *restrict weight) {
+    double part[LQ_LANES] = {0.0}, total = 0.0;
+    size_t i = 0;
+    for (; i + LQ_LANES <= count; i += LQ_LANES)
+        for (size_t l = 0; l < LQ_LANES; l++) {
+            const double lit = area_in * mu_o[i + l], sum = lit + area[i + l] * mu_i;
+            part[l] += weight[i + l] * (sum > 0.0 ? lit / sum : 1.0);
+        }
+    for (; i < count; i++) {
+        const double lit = area_in * mu_o[i], sum = lit + area[i] * mu_i;
+        total += weight[i] * (sum > 0.0 ? lit / sum : 1.0);
+    }
+    for (int l = 0; l < LQ_LANES; l++) total += part[l];
+    return total;
+}
+
+static void spread(int curves, const double *restrict curve, int count, const double *restrict moment,
+                   double *restrict sums) {
+    for (int k = 0; k < curves; k++)
+        for (int m = 0; m < count; m++) sums[k * count + m] += curve[k] * moment[m];
+}
+
+/* out = operators of curve 0 minus the absorptances times their coefficients; eight elements at a time, so
+ * that a coefficient is loaded once for eight multiplications. */
+static void combine(const lq_sylvester *s, const double *restrict operators, lq_v8 *restrict out) {
+    for (size_t e = 0; e < s->stride; e += 8) {
+        lq_v8 sum[8];
+        const double *p = operators + e;
+        for (int b = 0; b < 8; b++) sum[b] = (lq_v8){0.0} + p[b];
+        for (int k = 1; k < s->curves; k++) {
+            const lq_v8 c = s->coefficients[k];
+            p += s->stride;
+            for (int b = 0; b < 8; b++) sum[b] -= c * p[b];
+        }
+        for (int b = 0; b < 8; b++) out[e + (size_t)b] = sum[b];
+    }
+}
+
+static void assemble(const lq_sylvester *s) {
+    combine(s, s->dd, s->down);
+    combine(s, s->du, s->source);
+    combine(s, s->uu, s->up);
+    for (int i = 0; i < s->nodes; i++)
+        for (int j = 0; j < s->nodes; j++) {
+            s->down[i * s->nodes + j] *= s->a_down[i];
+            s->source[i * s->nodes + j] *= s->a_down[i];
+            s->up[i * s->nodes + j] *= s->a_up[j];
+        }
+}
+
+/* Row i of the sweep without what changes inside the row: partial_j = S_ij + sum_(k != i) A_ik R_kj. */
+static void row_partial(const lq_sylvester *s, int i, lq_v8 *restrict partial) {
+    const int n = s->nodes;
+    const lq_v8 *a = s->down + (size_t)i * (size_t)n;
+    for (int j = 0; j < n; j += 4) {
+        const int width = n - j < 4 ? n - j : 4;
+        lq_v8 sum[4] = {{0.0}};
+        for (int b = 0; b < width; b++) sum[b] = s->source[i * n + j + b];
+        if (width == 4) {
+            for (int k = 0; k < n; k++) {
+                if (k == i) continue;
+                const lq_v8 f = a[k];
+                const lq_v8 *r = s->r + (size_t)k * (size_t)n + j;
+                for (int b = 0; b < 4; b++) sum[b] += f * r[b];
+            }
+        } else {
+            for (int k = 0; k < n; k++)
+                for (int b = 0; b < width && k != i; b++) sum[b] += a[k] * s->r[k * n + j + b];
+        }
+        for (int b = 0; b < width; b++) partial[j + b] = sum[b];
+    }
+}
+
+static double largest_change(const lq_v8 *a, const lq_v8 *b) {
+    double most = 0.0;
+    for (int l = 0; l < LQ_LANES; l++) {
+        const double change = fabs((*a)[l] - (*b)[l]);
+        most = change > most ? change : most;
+    }
+    return most;
+}
+
+static double sweep(const lq_sylvester *s) {
+    const int n = s->nodes;
+    lq_v8 partial[LQ_NODES_MAX];
+    double most = 0.0;
+    for (int i = 0; i < n; i++) {
+        lq_v8 *row = s->r + (size_t)i * (size_t)n;
+        const lq_v8 own = s->down[i * n + i];
+        row_partial(s, i, partial);
+        for (int j = 0; j < n; j++) {
+            const lq_v8 *b = s->up + (size_t)j * (size_t)n;
+            lq_v8 even = partial[j], odd = {0.0};
+            int k = 0;
+            for (; k + 1 < n; k += 2) {
+                even += row[k] * b[k];
+                odd += row[k + 1] * b[k + 1];
+            }
+            if (k < n) even += row[k] * b[k];
+            const lq_v8 self = b[j];
+            const lq_v8 value = (even + odd - row[j] * self) / (s->a_down[i] + s->a_up[j] - own - self);
+            const double change = largest_change(&value, &row[j]);
+            most = change > most ? change : most;
+            row[j] = value;
+        }
+    }
+    return most;
+}
+
+static void survival(const lq_sylvester *s, lq_v8 *ratio) {
+    const int n = s->nodes;
+    for (int i = 0; i < n; i++) {
+        lq_v8 later = {0.0}, remaining = {0.0};
+        for (int j = 0; j < n; j++) {
+            const double escape = 1.0 / (s->a_down[i] + s->a_up[j]);
+            const lq_v8 source = s->source[i * n + j]; /* a_down du */
+            later += s->r[i * n + j] - escape * source;
+            remaining += s->down[i * n + j] + s->a_up[j] * escape * source;
+        }
+        for (int l = 0; l < LQ_LANES; l++)
+            ratio[i][l] = remaining[l] > 0.0 ? s->a_down[i] * later[l] / remaining[l] : 0.0;
+    }
+}
+
+static void read_energies(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio,
+                          lq_v8 *restrict energy) {
+    for (size_t m = 0; m < readout->count; m++) {
+        const double *first = readout->escaping + m * (size_t)s->curves;
+        const double *rest = readout->remaining + m * (size_t)s->curves;
+        const double *weight = readout->weights + m * (size_t)s->nodes;
+        lq_v8 escaping = (lq_v8){0.0} + first[0], remaining = (lq_v8){0.0} + rest[0], leaves = {0.0};
+        for (int k = 1; k < s->curves; k++) {
+            const lq_v8 c = s->coefficients[k];
+            escaping -= c * first[k];
+            remaining -= c * rest[k];
+        }
+        for (int i = 0; i < s->nodes; i++) leaves += weight[i] * ratio[i];
+        energy[m] = escaping + remaining * leaves;
+    }
+}
+
+const lq_solver_kernels *LQ_KERNELS(void) {
+    static const lq_solver_kernels kernels = {moments, escaping, spread,       assemble,
+                                              sweep,   survival, read_energies};
+    return &kernels;
+}

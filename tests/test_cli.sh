@@ -1,0 +1,243 @@
+#!/usr/bin/env bash
+# The command line as scripts see it: exit codes, one line per mistake, no partial files, Ctrl-C.
+set -euo pipefail
+: "${LACQUER:?path of the program}"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+mkdir folder files
+failures=0
+
+fail() {
+    echo "FAIL: $*" >&2
+    failures=$((failures + 1))
+}
+
+# run CODE ARGUMENTS...: files/out, files/err hold what it printed.
+run() {
+    local code=$1 got=0
+    shift
+    "$LACQUER" "$@" >files/out 2>files/err || got=$?
+    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat files/err)"
+}
+
+# refused PATTERN ARGUMENTS...: exit 1, one line on stderr that matches, nothing on stdout, no file made.
+refused() {
+    local pattern=$1
+    shift
+    run 1 "$@" </dev/null
+    [ "$(wc -l <files/err)" -eq 1 ] || fail "lacquer $*: not one line: $(cat files/err)"
+    grep -qE -e "$pattern" files/err || fail "lacquer $*: '$(cat files/err)' does not match '$pattern'"
+    [ ! -s files/out ] || fail "lacquer $*: printed on stdout: $(cat files/out)"
+    no_file "lacquer $*"
+}
+
+no_file() {
+    [ -z "$(ls -A folder)" ] || fail "$1: left $(ls -A folder)"
+    rm -rf folder
+    mkdir folder
+}
+
+point=(mu=0.4 alpha=0.3 n=0.2 kappa=3.9)
+small=(--axis mu=0:1:5 --axis alpha=0:1:4 --axis n=0.2:2:3 --axis kappa=1:4:3)
+
+# ------------------------------------------------------------------------------ help, version
+run 0 --version
+grep -qE '^lacquer [0-9]+\.[0-9]+\.[0-9]+$' files/out || fail "--version: $(cat files/out)"
+run 0 --help
+for verb in list eval precompute validate info bench; do
+    run 0 --help
+    grep -q "^  $verb " files/out || fail "--help does not show $verb"
+    run 0 "$verb" --help
+    grep -q '^Examples:' files/out || fail "$verb --help shows no examples"
+    [ ! -s files/err ] || fail "$verb --help wrote to stderr"
+done
+run 0 list
+for id in fgd albedo albedo-average dfg ggx exr npy; do
+    grep -q "^  $id " files/out || fail "list does not show $id"
+done
+
+# --------------------------------------------------------------------------------- bad words
+refused 'no verb; known: list, eval'
+refused "unknown verb 'x'; known: list, eval, precompute, validate, info, bench" x
+refused "unknown option '--x'" --x
+for verb in list eval precompute validate info bench; do
+    refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense
+done
+refused 'no arguments' list fgd
+
+# -------------------------------------------------------------------------------------- eval
+refused 'no table' eval
+refused "'nothing'.*fgd.*albedo" eval nothing mu=1
+refused 'missing .*: n, kappa$' eval fgd mu=1 alpha=1
+refused "unknown axis 'eta'; fgd has: mu, alpha, n, kappa" eval fgd eta=1
+refused 'mu = 1.5 is out of range; accepted: 0 to 1' eval fgd mu=1.5
+refused 'alpha = -0.1 is out of range' eval fgd alpha=-0.1
+refused "mu: 'nan' is not a number" eval fgd mu=nan
+refused "mu: 'inf' is not a number" eval fgd mu=inf
+refused "mu: '0.3x' is not a number" eval fgd mu=0.3x
+refused "mu: '' is not a number" eval fgd mu=
+refused "mu: '1e999' is not a number" eval fgd mu=1e999
+refused 'mu is given twice' eval fgd mu=0.3 mu=0.3
+refused "unexpected 'mu'" eval fgd mu
+refused 'needs a value' eval fgd "${point[@]}" --tolerance
+refused "'0' is not a number from" eval fgd "${point[@]}" --tolerance 0
+refused "'tiny' is not a number" eval fgd "${point[@]}" --tolerance tiny
+refused 'tolerance.*1e-14' eval fgd "${point[@]}" --tolerance 1e-14
+refused "'phong' is not one of: ggx" eval fgd "${point[@]}" --ndf phong
+refused 'single, multiple' eval fgd "${point[@]}" --scattering double
+refused 'correlated, separable' eval fgd "${point[@]}" --masking none
+refused 'text, csv, json' eval fgd "${point[@]}" --format xml
+refused 'takes no --scattering' eval albedo mu=1 alpha=1 --scattering multiple
+refused 'only table fgd' eval albedo mu=1 alpha=1 --orders 3
+refused 'from 1 to' eval fgd "${point[@]}" --orders 0
+refused 'scattering single' eval fgd "${point[@]}" --orders 3 --scattering single
+refused 'from 1 to' eval fgd "${point[@]}" --threads -1
+refused 'empty' eval fgd --format csv
+refused 'missing.exr' eval --from folder/missing.exr mu=1
+
+run 0 eval fgd "${point[@]}"
+grep -qE '^0\.936[0-9]+ ± [0-9.e-]+$' files/out || fail "eval fgd: $(cat files/out)"
+run 0 eval dfg mu=0.5 alpha=0.5
+[ "$(grep -cE '^[a-zA-Z0-9]+ 0\.[0-9]+ ± ' files/out)" -eq 2 ] || fail "eval dfg: $(cat files/out)"
+run 0 eval fgd "${point[@]}" --format json
+grep -qE '^\{.*"value": 0\.936.*"error": .*"converged": true' files/out || fail "json: $(cat files/out)"
+run 0 eval fgd "${point[@]}" --format csv
+[ "$(head -n 1 files/out)" = mu,alpha,n,kappa,value,error ] || fail "csv: $(cat files/out)"
+run 0 eval fgd mu=1 alpha=1 n=0.2 kappa=3.9 --orders 3
+[ "$(grep -c '^order [123]: ' files/out)" -eq 3 ] || fail "orders: $(cat files/out)"
+
+# --------------------------------------------------------------------------------------- CSV
+csv() { # CODE INPUT PATTERN: the message, or the first row of the output
+    local got=0
+    printf '%b' "$2" | "$LACQUER" eval albedo --format csv >files/out 2>files/err || got=$?
+    [ "$got" -eq "$1" ] || fail "csv '$2': exit $got, expected $1: $(cat files/err)"
+    if [ "$1" -eq 0 ]; then
+        [ ! -s files/err ] || fail "csv '$2': $(cat files/err)"
+        sed -n 2p files/out | grep -qE -e "$3" || fail "csv '$2': $(cat files/out)"
+    else
+        [ "$(wc -l <files/err)" -eq 1 ] || fail "csv '$2': not one line: $(cat files/err)"
+        grep -qE -e "$3" files/err || fail "csv '$2': $(cat files/err)"
+    fi
+}
+csv 0 'mu,alpha\n1,1\n' '^1,1,0\.30685[0-9]*,[0-9.e-]+$'
+csv 0 'alpha,mu\r\n1, 1\r\n\r\n' '^1, 1,0\.30685'
+csv 0 'mu,alpha\n1,1' '^1,1,0\.30685'
+csv 0 '"mu","alpha"\n1,1\n' '^1,1,0\.30685'
+csv 1 'mu,alpha,eta\n1,1,1\n' "line 1: unknown axis 'eta'; albedo has: mu, alpha"
+csv 1 'mu\n1\n' 'line 1: missing .* alpha'
+csv 1 'mu,mu\n1\n' 'line 1: .*twice'
+csv 1 'mu,alpha\n1,1\n1\n' 'line 3: 1 fields, expected 2'
+csv 1 'mu,alpha\n1,1,1\n' 'line 2: 3 fields, expected 2'
+csv 1 'mu,alpha\n1,x\n' "line 2: alpha: 'x' is not a number"
+csv 1 'mu,alpha\n2,1\n' 'line 2: mu = 2 is out of range; accepted: 0 to 1'
+csv 1 'mu,alpha\n1,1\0\n' 'line 2: .*NUL'
+csv 1 '' 'empty'
+
+{
+    echo mu,alpha
+    for i in $(seq 0 999); do echo "0.$i,0.5"; done
+} >files/points.csv
+for threads in 1 2; do
+    "$LACQUER" eval albedo --format csv --threads "$threads" <files/points.csv >"files/values$threads.csv"
+done
+cmp files/values1.csv files/values2.csv || fail "CSV depends on threads"
+[ "$(wc -l <files/values1.csv)" -eq 1001 ] || fail "CSV rows are lost"
+cut -d, -f1,2 files/values1.csv | cmp - files/points.csv || fail "CSV rows are out of order"
+
+# -------------------------------------------------------------------------------- precompute
+refused 'no table' precompute
+refused 'no output file' precompute fgd
+refused "'nothing'.*fgd" precompute nothing -o folder/t.exr
+refused 'one TABLE' precompute fgd albedo -o folder/t.exr
+refused 'end it in .exr or .npy' precompute fgd -o folder/t.tiff
+refused 'exr, npy' precompute fgd --format tiff -o folder/t.exr
+refused "unknown axis 'eta'; fgd has: mu" precompute fgd --axis eta=0:1:4 -o folder/t.exr
+refused 'mu .*out of range; accepted: 0 to 1' precompute fgd --axis mu=0:2:4 -o folder/t.exr
+refused 'mu is given twice' precompute fgd --axis mu=0:1:4 --axis mu=0:1:5 -o folder/t.exr
+refused 'has no nodes' precompute fgd --axis mu -o folder/t.exr
+refused 'mu.* 0 nodes' precompute fgd --axis mu=0:1:0 -o folder/t.exr
+refused 'mu' precompute fgd --axis mu=0:1:-4 -o folder/t.exr
+refused 'mu' precompute fgd --axis mu=0:1:4:cubic -o folder/t.exr
+refused 'mu' precompute fgd --axis mu=0:nan:4 -o folder/t.exr
+refused 'mu' precompute fgd --axis mu=1:0:4 -o folder/t.exr
+refused 'nodes' precompute fgd --axis mu=0:1:99999999999 -o folder/t.exr
+refused 'entries' precompute fgd --axis mu=0:1:1000000 --axis alpha=0:1:1000000 -o folder/t.exr
+refused 'No such file or directory' precompute fgd -o folder/none/t.exr
+refused 'cannot write /proc/t.exr' precompute fgd -o /proc/t.exr
+refused 'not a regular file' precompute fgd --format exr -o /dev/full
+refused 'not a regular file' precompute fgd --format exr -o folder
+[ -c /dev/full ] || fail "/dev/full was replaced"
+
+run 0 precompute fgd "${small[@]}" --threads 1 -o files/one.exr
+[ ! -s files/err ] || fail "precompute wrote to stderr: $(cat files/err)"
+grep -qE '^files/one.exr: 180 entries, error at most ' files/out || fail "summary: $(cat files/out)"
+run 0 precompute fgd "${small[@]}" --threads 2 -o files/two.exr
+cmp files/one.exr files/two.exr || fail "the file depends on the number of threads"
+run 0 precompute fgd "${small[@]}" -o files/t.npy
+head -c 6 files/t.npy | grep -q NUMPY || fail "t.npy is no .npy file"
+
+# A file size limit stands for a full disk: the older file stays, nothing else does.
+full_disk() { # FILE
+    local got=0
+    echo older >folder/"$1"
+    (ulimit -f 8 && "$LACQUER" precompute albedo --axis mu=0:1:80 --axis alpha=0:1:80 -o folder/"$1") \
+        >files/out 2>files/err || got=$?
+    [ "$got" -eq 1 ] || fail "full disk, $1: exit $got: $(cat files/err)"
+    [ "$(wc -l <files/err)" -eq 1 ] || fail "full disk, $1: not one line: $(cat files/err)"
+    grep -q "$1" files/err || fail "full disk: '$(cat files/err)' does not name $1"
+    [ "$(cat folder/"$1")" = older ] || fail "full disk: the older $1 is damaged"
+    rm folder/"$1"
+    no_file "full disk, $1"
+}
+full_disk t.exr
+full_disk t.npy
+got=0
+"$LACQUER" list >/dev/full 2>files/err || got=$?
+[ "$got" -eq 1 ] || fail "list >/dev/full: exit $got"
+grep -q 'No space left' files/err || fail "list >/dev/full: $(cat files/err)"
+
+# ------------------------------------------------------------------------------- stored files
+run 0 info files/one.exr
+for text in mu alpha kappa 'min .*max .*mean' 'command *lacquer precompute fgd' ggx; do
+    grep -q "$text" files/out || fail "info does not show $text: $(cat files/out)"
+done
+run 0 info --format json files/one.exr
+grep -q '"entries": 180' files/out || fail "info json: $(cat files/out)"
+run 0 eval --from files/one.exr mu=0.5 alpha=0 n=0.2 kappa=1
+grep -qE '^0\.[0-9]+$' files/out || fail "eval --from: $(cat files/out)"
+refused 'kappa = 5 is out of range; accepted: 1 to 4' eval --from files/one.exr mu=0.5 alpha=0 n=0.2 kappa=5
+refused '--ndf has no effect with --from' eval --from files/one.exr --ndf ggx mu=0.5
+
+head -c "$(($(stat -c %s files/one.exr) / 2))" files/one.exr >files/cut.exr
+head -c 100 files/one.exr >files/stump.exr
+: >files/empty.exr
+echo 'this is a text' >files/text.exr
+LC_ALL=C sed 's/lacquer/foreign/g' files/one.exr >files/foreign.exr # an EXR file of some other program
+for file in cut stump empty text foreign none; do
+    refused "$file.exr" info "files/$file.exr"
+    refused "$file.exr" eval --from "files/$file.exr" mu=0.5
+    refused "$file.exr" validate "files/$file.exr" --against walk --samples 10
+done
+refused 'files' info files
+
+# ------------------------------------------------------------------------------------ signals
+interrupt() { # SIGNAL
+    local got=0
+    "$LACQUER" precompute fgd --tolerance 1e-7 -o folder/t.exr >files/out 2>files/err &
+    local job=$!
+    sleep 0.7
+    kill "-$1" "$job"
+    wait "$job" || got=$?
+    [ "$got" -eq 130 ] || fail "SIG$1: exit $got: $(cat files/err)"
+    [ "$(wc -l <files/err)" -eq 1 ] || fail "SIG$1: not one line: $(cat files/err)"
+    no_file "SIG$1"
+}
+interrupt INT
+interrupt TERM
+
+[ "$failures" -eq 0 ] || {
+    echo "$failures failures" >&2
+    exit 1
+}

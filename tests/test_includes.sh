@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# Which room may include which. Fails on an include outside this table, on one that is not relative to
+# the root, and on a library file that includes a verb.
+set -euo pipefail
+cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
+
+declare -A may=(
+    [microfacet]=""
+    [tables]=""
+    [precompute]="microfacet tables"
+    [pca]="tables"
+    [fit]="microfacet tables"
+    [pack]="microfacet tables precompute pca fit"
+    [validate]="microfacet tables precompute pca fit pack"
+    [cli]=""
+)
+failed=0
+
+complain() { # FILE:LINE INCLUDE WHY
+    echo "$1: #include \"$2\": $3" >&2
+    failed=1
+}
+
+allowed_rooms() { # FILE ROOM
+    local name=${1##*/}
+    printf '%s' "lacquer.h $2 ${may[$2]}"
+    case $name in verb_*) printf ' cli' ;; esac
+    # the verb fills pca's callback for exact values
+    case $1 in pca/verb_*) printf ' precompute' ;; esac
+}
+
+check() { # FILE LINE INCLUDED
+    local file=$1 where=$1:$2 included=$3
+    local room=${file%%/*} target=${3%%/*} name=${file##*/}
+    case $included in
+    ../* | */../* | ./*) complain "$where" "$included" "is not relative to the root" ;;
+    esac
+    [ -e "$included" ] || complain "$where" "$included" "no such file from the root"
+    case " $(allowed_rooms "$file" "$room") " in
+    *" $target "*) ;;
+    *) complain "$where" "$included" "$room/ may not include it" ;;
+    esac
+    case $included:$name in
+    */verb_*:verb_*) ;;
+    */verb_*) complain "$where" "$included" "only verbs include a verb's header" ;;
+    esac
+    case $file:$included in
+    validate/walk*:precompute/*) complain "$where" "$included" "the random walk is independent of it" ;;
+    esac
+}
+
+for room in "${!may[@]}"; do
+    while IFS=: read -r file line text; do
+        check "$file" "$line" "$(sed -E 's/^[^"]*"([^"]*)".*/\1/' <<<"$text")"
+    done < <(find "$room" -name '*.[ch]' -o -name '*.cc' 2>/dev/null | sort |
+        xargs -r grep -HnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' || true)
+done
+exit "$failed"

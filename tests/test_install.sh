@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# Installs into an empty prefix and builds a small program against it, outside the tree: once through
+# pkg-config, once through find_package. First the library as it was built, then a shared one.
+set -euo pipefail
+: "${LACQUER_BUILD:?build folder}" "${LACQUER_SOURCE:?source folder}"
+cmake=${CMAKE_COMMAND:-cmake}
+cc=${CC:-cc}
+
+if grep -q 'CMAKE_C_FLAGS:.*-fsanitize' "$LACQUER_BUILD/CMakeCache.txt"; then
+    echo "skipped: a program of a user's is not built with sanitizers"
+    exit 77
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+cat >user.c <<'END'
+#include <lacquer.h>
+#include <math.h>
+#include <stdio.h>
+
+int main(void) {
+    lq_settings settings = lq_settings_default();
+    const lq_kind *kind = lq_kind_find("fgd", NULL);
+    lq_error error;
+    double point[] = {0.4, 0.3, 0.2, 3.9}, value, estimate;
+    if (lq_eval(kind, &settings, point, &value, &estimate, &error) != LQ_OK) return puts(error.text), 1;
+    return fabs(value - 0.93688) < 1e-4 ? 0 : 2; /* random walks of 2e7 samples */
+}
+END
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES C)
+find_package(lacquer 0.1 CONFIG REQUIRED)
+add_executable(user user.c)
+target_link_libraries(user PRIVATE lacquer::lacquer m)
+END
+
+try() { # PREFIX
+    local libdir
+    libdir=$(dirname "$(find "$1" -name lacquer.pc)")
+    "$1/bin/lacquer" --version >/dev/null
+    # shellcheck disable=SC2046 # flags are several words
+    "$cc" user.c -o user-pc $(PKG_CONFIG_PATH=$libdir pkg-config --cflags --libs lacquer) -lm
+    LD_LIBRARY_PATH=${libdir%/pkgconfig} ./user-pc
+    "$cmake" -S . -B "$1-user" -G Ninja -DCMAKE_PREFIX_PATH="$1" -DCMAKE_C_COMPILER="$cc" >log 2>&1 || {
+        cat log
+        return 1
+    }
+    "$cmake" --build "$1-user" >log 2>&1 || {
+        cat log
+        return 1
+    }
+    "$1-user/user"
+}
+
+"$cmake" --install "$LACQUER_BUILD" --prefix "$work/first" >/dev/null
+mv first moved # an installed tree that is moved still works
+try "$work/moved"
+
+"$cmake" -S "$LACQUER_SOURCE" -B shared-build -G Ninja -DBUILD_SHARED_LIBS=ON -DLACQUER_TESTS=OFF \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_COMPILER="$cc" >/dev/null
+"$cmake" --build shared-build >log || {
+    cat log
+    exit 1
+}
+"$cmake" --install shared-build --prefix "$work/shared" >/dev/null
+try "$work/shared"

@@ -1,0 +1,54 @@
+/* One ray of a random walk inside the microsurface: where it is, and its flights between hits.
+ *
+ * The depth t = -ln C1(h) is all that matters of a height (definitions: H16, restated without heights).
+ * Per unit of t a ray meets the surface at the rate sigma(-omega) / |omega_z|: 1 + Lambda going down,
+ * Lambda going up. The flights divide by the projected area, which is finite at grazing, not by Lambda.
+ */
+#ifndef LACQUER_VALIDATE_WALK_RAY_H
+#define LACQUER_VALIDATE_WALK_RAY_H
+
+#include "microfacet/ndf.h"
+#include "validate/sample_visible.h"
+#include "validate/stream.h"
+#include "validate/walk.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+typedef struct lq_ray {
+    double z, s; /* cosine (signed, up positive) and sine of the direction of travel */
+    double t;    /* depth below the top of the microsurface, >= 0 */
+    double weight;
+} lq_ray;
+
+/* Downwards to the next hit. There always is one. */
+static inline void lq_ray_descend(lq_ray *ray, const lq_ndf *ndf, double alpha, lq_stream *stream) {
+    const double mu = -ray->z;
+    ray->t -= log(lq_stream_uniform(stream)) * mu / lq_area_above(ndf, alpha, mu, ray->s);
+}
+
+/* Upwards: true when it leaves at the top, otherwise it is at its next hit. */
+static inline bool lq_ray_rise(lq_ray *ray, const lq_ndf *ndf, double alpha, lq_stream *stream) {
+    const double area = ndf->area_below(ndf, alpha, ray->z, ray->s);
+    const double flight = -log(lq_stream_uniform(stream));
+    /* At the very top, t = 0, even a grazing ray leaves. */
+    if (flight * ray->z >= ray->t * area) return true;
+    ray->t = fmax(ray->t - flight * ray->z / area, 0.0);
+    return false;
+}
+
+/* The cosine of incidence of one sample. */
+static inline double lq_ray_incidence(const lq_walk *walk, lq_stream *stream) {
+    return walk->cosine ? sqrt(lq_stream_uniform(stream)) : walk->mu;
+}
+
+/* Mirror reflection of the direction -v about the facet. */
+static inline void lq_ray_reflect(lq_ray *ray, const lq_facet *facet) {
+    const double twice = 2.0 * facet->cosine;
+    const double x = twice * facet->x - ray->s; /* v leans to +x, the ray to -x */
+    const double y = twice * facet->y;
+    ray->z += twice * facet->z;
+    ray->s = sqrt(x * x + y * y);
+}
+
+#endif

@@ -1,0 +1,159 @@
+/* The two-sided random walk of a rough dielectric (H16 section 4): reflects or refracts at each hit.
+ *
+ * A ray below the surface walks in the flipped frame (z -> -z, u -> 1 - u, m -> -m, eta -> 1/eta), so both
+ * sides run the same code. The depth there is t' = -ln(1 - e^-t), and t <-> t' loses nothing at either end.
+ */
+#include "microfacet/fresnel.h"
+#include "tables/status.h"
+#include "validate/walk.h"
+#include "validate/walk_ray.h"
+#include "validate/walk_reduce.h"
+
+/* Both outcomes of a hit are followed while each weighs at least this much; below it one is drawn. */
+static const double split = 0.005;
+
+/* No path has more branches in waiting: all weights sum to 1 and each is at least `split`. */
+enum { MAX_BRANCHES = 512 };
+
+typedef struct branch {
+    lq_ray ray;
+    int side; /* 0 near, 1 far */
+} branch;
+
+typedef struct context {
+    const lq_walk *walk;
+    lq_visible visible;
+    double eta[2]; /* index of the other side over that of this one */
+    double log_tau[2];
+} context;
+
+/* What a sample writes. The sums with sin^2 added give the covariance that the error of a ratio needs. */
+enum { ENERGY, SIN2 = 2, SUM = 4, VALUES = 6 };
+
+/* tau^(1/z); tau = 1 costs nothing even at grazing. */
+static double crossing(double log_tau, double z) {
+    return log_tau == 0.0 ? 1.0 : exp(log_tau / z);
+}
+
+/* The depth of the same height seen from the other side; at most that of u = 1e-300. */
+static double flip_depth(double t) {
+    const double flipped = t < 0.69 ? -log(-expm1(-t)) : -log1p(-exp(-t));
+    return fmin(flipped, 690.0);
+}
+
+/* Refraction through the facet, then into the frame of the other side. */
+static void refract(branch *b, const lq_facet *facet, double eta, double cos_t) {
+    const double normal = facet->cosine / eta - cos_t;
+    const double x = normal * facet->x - b->ray.s / eta;
+    const double y = normal * facet->y;
+    b->ray.z = -(b->ray.z / eta + normal * facet->z);
+    b->ray.s = sqrt(x * x + y * y);
+    b->ray.t = flip_depth(b->ray.t);
+    b->side = 1 - b->side;
+}
+
+/* One hit. Returns true when a second branch, `other`, came of it. */
+static bool hit(const context *c, branch *b, branch *other, lq_stream *stream) {
+    lq_facet facet;
+    lq_visible_sample(&c->visible, -b->ray.z, b->ray.s, stream, &facet);
+    double cos_t;
+    const double eta = c->eta[b->side];
+    const double f = lq_fresnel_dielectric(fmin(facet.cosine, 1.0), eta, &cos_t);
+    const double reflected = b->ray.weight * f;
+    const double refracted = b->ray.weight - reflected;
+    if (fmin(reflected, refracted) >= split) {
+        *other = *b;
+        other->ray.weight = refracted;
+        refract(other, &facet, eta, cos_t);
+        b->ray.weight = reflected;
+        lq_ray_reflect(&b->ray, &facet);
+        return true;
+    }
+    if (lq_stream_uniform(stream) < f) lq_ray_reflect(&b->ray, &facet);
+    else refract(b, &facet, eta, cos_t);
+    return false;
+}
+
+static void leave(const context *c, const branch *b, double *values) {
+    const double energy = b->ray.weight * crossing(c->log_tau[b->side], b->ray.z);
+    const double sin2 = b->ray.s * b->ray.s;
+    values[ENERGY + b->side] += energy;
+    values[SIN2 + b->side] += energy * sin2;
+}
+
+static void follow(const context *c, branch *stack, lq_stream *stream, double *values) {
+    const lq_walk *walk = c->walk;
+    for (int waiting = 1; waiting > 0;) {
+        branch *b = &stack[waiting - 1];
+        if (b->ray.z < 0.0) {
+            lq_ray_descend(&b->ray, walk->ndf, walk->alpha, stream);
+        } else if (lq_ray_rise(&b->ray, walk->ndf, walk->alpha, stream)) {
+            leave(c, b, values);
+            waiting--;
+            continue;
+        }
+        if (hit(c, b, &stack[waiting], stream)) waiting++;
+    }
+}
+
+static void finish(const context *c, double mu, double *values) {
+    const double in = crossing(c->log_tau[0], mu);
+    for (int i = 0; i < SUM; i++) values[i] *= in;
+    for (int side = 0; side < 2; side++) values[SUM + side] = values[ENERGY + side] + values[SIN2 + side];
+}
+
+static void sample_rough(const void *data, lq_stream *stream, double *values) {
+    const context *c = data;
+    const double mu = lq_ray_incidence(c->walk, stream);
+    /* Grazing light only touches the tips of the surface; a cosine of 0 stands for the limit. */
+    const double down = fmax(mu, 1e-300);
+    branch stack[MAX_BRANCHES];
+    stack[0] = (branch){.ray = {.z = -down, .s = lq_sine(mu), .weight = 1.0}};
+    follow(c, stack, stream, values);
+    finish(c, mu, values);
+}
+
+static void sample_smooth(const void *data, lq_stream *stream, double *values) {
+    const context *c = data;
+    const double mu = lq_ray_incidence(c->walk, stream);
+    const double sine = lq_sine(mu);
+    double cos_t;
+    const double f = lq_fresnel_dielectric(mu, c->eta[0], &cos_t);
+    const branch near = {.ray = {.z = mu, .s = sine, .weight = f}};
+    const branch far = {.ray = {.z = cos_t, .s = fmin(sine / c->eta[0], 1.0), .weight = 1.0 - f}, .side = 1};
+    leave(c, &near, values);
+    leave(c, &far, values);
+    finish(c, mu, values);
+}
+
+/* y/x of two means; its error by the delta method, with 2 cov = var(x + y) - var x - var y. */
+static lq_walk_mean ratio(lq_walk_mean y, lq_walk_mean x, lq_walk_mean sum) {
+    lq_walk_mean r = {0.0, 0.0};
+    if (x.mean <= 0.0) return r;
+    r.mean = y.mean / x.mean;
+    const double vx = x.error * x.error, vy = y.error * y.error;
+    const double covariance = 0.5 * (sum.error * sum.error - vx - vy);
+    const double variance = vy - 2.0 * r.mean * covariance + r.mean * r.mean * vx;
+    r.error = sqrt(fmax(variance, 0.0)) / x.mean;
+    return r;
+}
+
+lq_status lq_walk_two_sided(const lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
+    lq_status status = lq_walk_check(walk, error);
+    if (status != LQ_OK) return status;
+    if (walk->fresnel != LQ_WALK_DIELECTRIC || !(walk->n > 0.0))
+        return lq_fail(error, LQ_BAD_INPUT, "two-sided random walk: needs a dielectric of index > 0");
+    context c = {
+        .walk = walk, .eta = {walk->n, 1.0 / walk->n}, .log_tau = {log(walk->tau_near), log(walk->tau_far)}};
+    /* An interface between equal media is none, however often a grazing ray would have to cross it. */
+    const bool rough = walk->alpha > 0.0 && walk->n != 1.0;
+    if (rough) lq_visible_make(&c.visible, walk->ndf, walk->alpha, true);
+    lq_walk_mean m[VALUES];
+    status = lq_walk_reduce(walk, rough ? sample_rough : sample_smooth, &c, VALUES, m, error);
+    if (status != LQ_OK) return status;
+    sides->reflected = m[ENERGY];
+    sides->transmitted = m[ENERGY + 1];
+    sides->reflected_sin2 = ratio(m[SIN2], m[ENERGY], m[SUM]);
+    sides->transmitted_sin2 = ratio(m[SIN2 + 1], m[ENERGY + 1], m[SUM + 1]);
+    return LQ_OK;
+}
