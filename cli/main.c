@@ -1,6 +1,7 @@
 /* main.c - the lacquer program: finds the verb, prints help, checks that output arrived. */
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/progress.h"
 #include "cli/verb.h"
 #include "lacquer.h"
 
@@ -82,6 +83,7 @@ static int run(int argc, char **argv) {
 int main(int argc, char **argv) {
     /* A write beyond a file size limit must come back as an error that cleans up, not as a kill. */
     signal(SIGXFSZ, SIG_IGN);
+    cli_catch_signals();
     int code = run(argc, argv);
     if (ferror(stdout) || fflush(stdout) != 0 || fclose(stdout) != 0) {
         int failed = cli_fail("cannot write to standard output: %s", strerror(errno));

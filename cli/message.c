@@ -5,6 +5,8 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
 static const char *verb_name;
 
@@ -38,9 +40,25 @@ int cli_fail(const char *format, ...) {
     return CLI_FAILED;
 }
 
+static void put(const char *text) {
+    size_t length = strlen(text);
+    while (length > 0) {
+        ssize_t wrote = write(STDERR_FILENO, text, length);
+        if (wrote <= 0) return;
+        text += wrote;
+        length -= (size_t)wrote;
+    }
+}
+
+void cli_message_interrupted(void) {
+    put(verb_name ? "lacquer " : "lacquer");
+    if (verb_name) put(verb_name);
+    put(": interrupted\n");
+}
+
 int cli_fail_status(lq_status status, const lq_error *error) {
     if (status == LQ_CANCELLED) {
-        cli_message("interrupted");
+        cli_message_interrupted();
         return CLI_INTERRUPTED;
     }
     cli_message("%s", error->text[0] ? error->text : "failed without a message");

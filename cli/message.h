@@ -11,6 +11,9 @@ void cli_message_verb(const char *verb);
 void cli_message(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int cli_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Print that a signal stopped the verb; may be called by a signal handler. */
+void cli_message_interrupted(void);
+
 /* Report a status of the library that is not LQ_OK and give the exit code it stands for. */
 int cli_fail_status(lq_status status, const lq_error *error);
 

@@ -28,22 +28,23 @@ static bool takes_files(const char *folder) {
     return true;
 }
 
+static bool refuse(const char *path, const char *why) {
+    cli_message("cannot write %s: %s", path, why);
+    return false;
+}
+
 bool cli_output_check(const char *path) {
     char folder[PATH_MAX - 32] = ".";
     size_t length = (size_t)(cli_basename(path) - path);
-    if (path[length] == '\0' || strlen(path) >= sizeof folder) {
-        cli_message("'%s' is not the name of a file", path);
-        return false;
-    }
-    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
     struct stat there;
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
-        cli_message("cannot write %s: it exists and is not a regular file", path);
-        return false;
-    }
-    if (!takes_files(folder)) {
-        cli_message("cannot write %s: folder %s: %s", path, folder, strerror(errno));
-        return false;
-    }
-    return true;
+    if (stat(path, &there) == 0 && S_ISDIR(there.st_mode)) return refuse(path, "it is a folder, not a file");
+    if (path[length] == '\0') return refuse(path, "that is not the name of a file");
+    if (stat(path, &there) == 0 && access(path, W_OK) != 0) return refuse(path, strerror(errno));
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+        return true; /* a device or pipe is written as it is */
+    if (strlen(path) >= sizeof folder) return refuse(path, strerror(ENAMETOOLONG));
+    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    if (takes_files(folder)) return true;
+    cli_message("cannot write %s: folder %s: %s", path, folder, strerror(errno));
+    return false;
 }

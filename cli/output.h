@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-/* The folder of `path` exists and takes new files, and `path` is not something that a rename must not
- * replace (a folder, a device). False: a line was printed. */
+/* The folder of `path` exists and takes new files, and `path` itself is not a folder and not protected.
+ * False: a line was printed. */
 bool cli_output_check(const char *path);
 
 /* What follows the last slash. */

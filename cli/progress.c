@@ -1,6 +1,9 @@
 /* progress.c - draws the bar, and turns SIGINT and SIGTERM into a flag the work can see. */
 #include "cli/progress.h"
 
+#include "cli/message.h"
+#include "cli/verb.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <time.h>
@@ -13,9 +16,15 @@ static const double SHOW_EVERY = 0.1; /* seconds between two drawings */
 /* A signal handler can reach nothing but a global. */
 static volatile sig_atomic_t interrupted;
 
-static void on_signal(int number) {
+static void set_flag(int number) {
     (void)number;
     interrupted = 1;
+}
+
+static void exit_now(int number) {
+    (void)number;
+    cli_message_interrupted();
+    _exit(CLI_INTERRUPTED);
 }
 
 bool cli_interrupted(void) {
@@ -61,13 +70,17 @@ static void on_signals(void (*handler)(int)) {
     sigaction(SIGTERM, &action, NULL);
 }
 
+void cli_catch_signals(void) {
+    on_signals(exit_now);
+}
+
 void cli_progress_begin(cli_progress *bar, const char *label) {
     *bar = (cli_progress){.label = label, .start = cli_seconds(), .terminal = isatty(STDERR_FILENO) == 1};
     bar->progress = (lq_progress){.report = report, .user = bar};
-    on_signals(on_signal);
+    on_signals(set_flag);
 }
 
 void cli_progress_end(cli_progress *bar) {
     if (bar->drawn) fprintf(stderr, "\r\033[K");
-    on_signals(SIG_DFL);
+    on_signals(exit_now);
 }

@@ -7,7 +7,9 @@
  *     if (status != LQ_OK) return cli_fail_status(status, &error);   // LQ_CANCELLED: exit 130
  *
  * The bar shows on stderr when that is a terminal and the job takes more than a second. From begin to
- * end SIGINT and SIGTERM only set a flag, which makes the next report return false. */
+ * end SIGINT and SIGTERM only set a flag, which makes the next report return false, so that the work is
+ * taken down in order. At any other time they print one line and exit with CLI_INTERRUPTED at once: files
+ * being written have no name yet (tables/output.h), so nothing is left. */
 #ifndef CLI_PROGRESS_H
 #define CLI_PROGRESS_H
 
@@ -22,6 +24,9 @@ typedef struct cli_progress {
 
 void cli_progress_begin(cli_progress *bar, const char *label);
 void cli_progress_end(cli_progress *bar);
+
+/* For main: from here on SIGINT and SIGTERM do as described above. */
+void cli_catch_signals(void);
 
 /* True once SIGINT or SIGTERM came, for loops of a verb's own. */
 bool cli_interrupted(void);

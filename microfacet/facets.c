@@ -34,7 +34,12 @@ static void add_horizon_crossings(lq_panels *panels, double theta) {
  * thin layer of facets around those that reflect along the horizon. */
 static void grade_grazing(lq_panels *panels, double theta) {
     const double elevation = 0.5 * pi - theta;
-    if (elevation > 0.0) lq_panels_grade(panels, 0.5 * (0.5 * pi + theta), fmax(elevation, 1e-9), 5.0, true);
+    if (elevation > 0.0) lq_panels_grade(panels, 0.5 * (0.5 * pi + theta), fmax(elevation, 1e-9), 5.0);
+}
+
+static void add_extra(lq_panels *panels, const lq_panels *extra, bool singular) {
+    for (int i = 0; extra && i < extra->count; i++)
+        if (extra->singular[i] == singular) lq_panels_add(panels, extra->at[i], singular);
 }
 
 static void make_panels(const view *w, const lq_panels *extra, lq_panels *panels) {
@@ -42,11 +47,11 @@ static void make_panels(const view *w, const lq_panels *extra, lq_panels *panels
     lq_panels_start(panels, from, 0.5 * pi);
     if (from > 0.0) panels->singular[0] = true; /* the range of azimuth opens like a square root */
     add_horizon_crossings(panels, w->theta);
-    lq_panels_grade(panels, w->theta, w->alpha, 4.0, false);
+    add_extra(panels, extra, true);
+    lq_panels_grade(panels, w->theta, w->alpha, 4.0);
     grade_grazing(panels, w->theta);
-    lq_panels_add(panels, w->theta, false);
-    if (!extra) return;
-    for (int i = 0; i < extra->count; i++) lq_panels_add(panels, extra->at[i], extra->singular[i]);
+    add_extra(panels, extra, false);
+    lq_panels_separate(panels);
 }
 
 /* chi/2 of the azimuth with cos psi = `cos_psi`, clamped to [0, pi/2]. */

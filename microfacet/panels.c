@@ -32,12 +32,37 @@ void lq_panels_add(lq_panels *panels, double at, bool singular) {
     panels->count++;
 }
 
-void lq_panels_grade(lq_panels *panels, double centre, double width, double ratio, bool singular) {
+static bool crowded(const lq_panels *panels, double at, double room) {
+    for (int i = 0; i < panels->count; i++)
+        if (panels->singular[i] && fabs(panels->at[i] - at) < room) return true;
+    return false;
+}
+
+void lq_panels_grade(lq_panels *panels, double centre, double width, double ratio) {
     const double from = panels->at[0], to = panels->at[panels->count - 1];
-    if (singular) lq_panels_add(panels, centre, true);
     for (double w = width; centre - w > from || centre + w < to; w *= ratio) {
-        lq_panels_add(panels, centre - w, false);
-        lq_panels_add(panels, centre + w, false);
+        if (!crowded(panels, centre - w, 0.3 * w)) lq_panels_add(panels, centre - w, false);
+        if (!crowded(panels, centre + w, 0.3 * w)) lq_panels_add(panels, centre + w, false);
+    }
+}
+
+/* Distance of panel p to the nearest singular break point that is not one of its ends. */
+static double nearest_foreign(const lq_panels *panels, int p) {
+    double nearest = INFINITY;
+    for (int i = 0; i < panels->count; i++) {
+        if (!panels->singular[i] || i == p || i == p + 1) continue;
+        nearest = fmin(nearest, i < p ? panels->at[p] - panels->at[i] : panels->at[i] - panels->at[p + 1]);
+    }
+    return nearest;
+}
+
+void lq_panels_separate(lq_panels *panels) {
+    for (int p = 0; p + 1 < panels->count;) {
+        const double width = panels->at[p + 1] - panels->at[p];
+        const int before = panels->count;
+        if (width > 1e-9 && nearest_foreign(panels, p) < 0.25 * width)
+            lq_panels_add(panels, panels->at[p] + 0.5 * width, false);
+        if (panels->count == before) p++;
     }
 }
 

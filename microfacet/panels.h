@@ -26,9 +26,14 @@ void lq_panels_start(lq_panels *panels, double from, double to);
  * singularity. Past LQ_PANELS_MAX it is ignored too: the panel stays wider than wished. */
 void lq_panels_add(lq_panels *panels, double at, bool singular);
 
-/* Break points centre +- width ratio^k for k = 0, 1, ..., and at the centre where `singular`: resolves a
- * feature of that width whose tails fall like a power. */
-void lq_panels_grade(lq_panels *panels, double centre, double width, double ratio, bool singular);
+/* Break points centre +- width ratio^k for k = 0, 1, ...: resolves a feature of that width whose tails fall
+ * like a power. One that would fall close to a singular break point is left out: it would cut off that
+ * point's own panel and leave the singularity just beyond the end of the next. Add the singular ones first.
+ */
+void lq_panels_grade(lq_panels *panels, double centre, double width, double ratio);
+
+/* Bisect every panel that is wide against its distance to a singular break point not its own. */
+void lq_panels_separate(lq_panels *panels);
 
 /* Node `u` in [0,1] of panel `p`: its position; *slope gets d position / du. */
 double lq_panels_map(const lq_panels *panels, int p, double u, double *slope);

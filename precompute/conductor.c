@@ -32,16 +32,50 @@ enum { LEVELS = sizeof levels / sizeof levels[0] };
  * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
  */
 static lq_cosine_map map_down(double alpha) {
-    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(1.0 / alpha), 0};
+    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(1.0 / alpha), -1.0, 0};
 }
 
 static lq_cosine_map map_up(double alpha) {
-    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(2.0 / alpha), 1};
+    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(2.0 / alpha), -1.0, 1};
+}
+
+static double map_forward(const lq_cosine_map *map, double mu) {
+    const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
+    return map->scale * asinh(t * map->inverse_alpha) + map->shift;
 }
 
 static double map_inverse(const lq_cosine_map *map, double x) {
-    const double t = sinh((x + 1.0) / map->scale) / map->inverse_alpha;
+    const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
     return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
+}
+
+/* The node axis of one sense of direction: one element [0,1] of cosines, or two where the energy changes
+ * abruptly at a known cosine. Each element has its own Chebyshev points. */
+enum { ELEMENTS_MAX = 2 };
+
+typedef struct node_axis {
+    int elements;
+    double bound[ELEMENTS_MAX + 1]; /* cosines */
+    lq_cosine_map map[ELEMENTS_MAX];
+} node_axis;
+
+/* Cosines at which the two node axes are divided, or 0. */
+typedef struct split {
+    double down, up;
+} split;
+
+static node_axis axis_make(lq_cosine_map whole, double at) {
+    node_axis axis = {.elements = at > 0.0 && at < 1.0 ? 2 : 1};
+    axis.bound[1] = at;
+    axis.bound[axis.elements] = 1.0;
+    for (int e = 0; e < axis.elements; e++) {
+        const double from = map_forward(&whole, axis.bound[e]), to = map_forward(&whole, axis.bound[e + 1]);
+        const double half = 0.5 * (to - from), middle = 0.5 * (from + to);
+        axis.map[e] = whole;
+        axis.map[e].scale /= half;
+        axis.map[e].shift = (whole.shift - middle) / half;
+    }
+    return axis;
 }
 
 static double chebyshev_angle(int nodes, int i) {
@@ -59,11 +93,13 @@ static void chebyshev_basis(int nodes, double *basis) {
 
 typedef struct operators {
     int nodes, curves;
+    int element; /* nodes of one element */
+    node_axis down, up;
     size_t stride;
     double mu_down[LQ_NODES_MAX], mu_up[LQ_NODES_MAX];
     double a_down[LQ_NODES_MAX], a_up[LQ_NODES_MAX];
     double *dd, *du, *uu; /* as in lq_sylvester */
-    double *basis;
+    double *basis;        /* of one element */
 } operators;
 
 static void operators_free(operators *o) {
@@ -84,47 +120,64 @@ static double *zeros(size_t count) {
 typedef struct scatter {
     const lq_curves *curves;
     const lq_solver_kernels *kernels;
-    lq_cosine_map down, up;
-    int nodes;
+    const operators *o;
     double total;
     double *to_down, *to_up; /* [curve * nodes + moment] */
 } scatter;
 
+/* Moments of facets whose cosines run monotonically: those of one element are neighbours. */
+static void axis_moments(const scatter *s, const node_axis *axis, size_t count, const double *cosine,
+                         const double *weight, double *moment) {
+    memset(moment, 0, (size_t)s->o->nodes * sizeof *moment);
+    for (size_t from = 0; from < count;) {
+        const int e = axis->elements == 2 && cosine[from] > axis->bound[1];
+        size_t to = from + 1;
+        while (to < count && (axis->elements == 1 || (cosine[to] > axis->bound[1]) == e)) to++;
+        s->kernels->moments(&axis->map[e], to - from, cosine + from, weight + from, s->o->element,
+                            moment + e * s->o->element);
+        from = to;
+    }
+}
+
+static void scatter_part(scatter *s, const node_axis *axis, size_t count, const double *cosine,
+                         const double *weight, const double *curve, double *sums) {
+    double moment[LQ_NODES_MAX];
+    if (!count) return;
+    axis_moments(s, axis, count, cosine, weight, moment);
+    s->kernels->spread(s->curves->count, curve, s->o->nodes, moment, sums);
+    for (int e = 0; e < axis->elements; e++) s->total += moment[e * s->o->element];
+}
+
 static void scatter_fan(void *user, const lq_fan *fan) {
     scatter *s = user;
-    double curve[LQ_CURVES_MAX], moment[LQ_NODES_MAX];
-    const size_t up = (size_t)fan->up, down = (size_t)(fan->count - fan->up);
+    double curve[LQ_CURVES_MAX];
+    const size_t up = (size_t)fan->up;
     lq_curves_at(s->curves, fan->cos_d, curve);
-    if (up) {
-        memset(moment, 0, sizeof moment);
-        s->kernels->moments(&s->up, up, fan->mirror, fan->weight, s->nodes, moment);
-        s->kernels->spread(s->curves->count, curve, s->nodes, moment, s->to_up);
-        s->total += moment[0];
-    }
-    if (down) {
-        memset(moment, 0, sizeof moment);
-        s->kernels->moments(&s->down, down, fan->mirror + up, fan->weight + up, s->nodes, moment);
-        s->kernels->spread(s->curves->count, curve, s->nodes, moment, s->to_down);
-        s->total += moment[0];
-    }
+    scatter_part(s, &s->o->up, up, fan->mirror, fan->weight, curve, s->to_up);
+    scatter_part(s, &s->o->down, (size_t)fan->count - up, fan->mirror + up, fan->weight + up, curve,
+                 s->to_down);
 }
 
 /* Row i of an operator from its moments: P_ij = sum_m moment_m basis_mj / total. Element (i, j) of curve k
  * goes to out[k * stride + i * row + j * column]. */
 static void write_row(const operators *o, const double *moments, double total, int i, int row, int column,
                       double *out) {
-    const int n = o->nodes;
+    const int n = o->element;
+    double values[LQ_NODES_MAX];
     for (int k = 0; k < o->curves; k++)
-        for (int j = 0; j < n; j++) {
-            double sum = 0.0;
-            for (int m = 0; m < n; m++) sum += moments[k * n + m] * o->basis[m * n + j];
-            out[(size_t)k * o->stride + (size_t)(i * row + j * column)] = sum / total;
+        for (int first = 0; first < o->nodes; first += n) {
+            const double *moment = moments + k * o->nodes + first;
+            memset(values, 0, sizeof values);
+            for (int m = 0; m < n; m++)
+                for (int j = 0; j < n; j++) values[j] += moment[m] * o->basis[m * n + j];
+            for (int j = 0; j < n; j++)
+                out[(size_t)k * o->stride + (size_t)(i * row + (first + j) * column)] = values[j] / total;
         }
 }
 
 static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const lq_facet_rule *rule,
                               scatter *s) {
-    const size_t size = (size_t)s->curves->count * (size_t)s->nodes * sizeof(double);
+    const size_t size = (size_t)s->curves->count * (size_t)s->o->nodes * sizeof(double);
     memset(s->to_down, 0, size);
     memset(s->to_up, 0, size);
     s->total = 0.0;
@@ -132,25 +185,28 @@ static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const
 }
 
 static void place_nodes(operators *o, const lq_ndf *ndf, double alpha) {
-    const lq_cosine_map down = map_down(alpha), up = map_up(alpha);
     for (int i = 0; i < o->nodes; i++) {
-        const double x = cos(chebyshev_angle(o->nodes, i));
-        o->mu_down[i] = map_inverse(&down, x);
-        o->mu_up[i] = map_inverse(&up, x);
+        const double x = cos(chebyshev_angle(o->element, i % o->element));
+        o->mu_down[i] = map_inverse(&o->down.map[i / o->element], x);
+        o->mu_up[i] = map_inverse(&o->up.map[i / o->element], x);
         o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->mu_down[i]);
         o->a_up[i] = lq_lambda(ndf, alpha, o->mu_up[i]);
     }
 }
 
+/* `split`: the cosines at which the node axes are divided, or 0. */
 static bool operators_make(operators *o, const lq_ndf *ndf, double alpha, const lq_curves *curves,
-                           const level *l) {
+                           const level *l, split at) {
     const size_t n = (size_t)l->nodes, k = (size_t)curves->count;
     *o = (operators){.nodes = l->nodes, .curves = curves->count, .stride = (n * n + 7) / 8 * 8};
     o->dd = zeros(k * o->stride);
     o->du = zeros(k * o->stride);
     o->uu = zeros(k * o->stride);
     o->basis = zeros(n * n);
-    scatter s = {curves, lq_solver_kernels_get(), map_down(alpha), map_up(alpha), l->nodes, 0.0, NULL, NULL};
+    o->down = axis_make(map_down(alpha), at.down);
+    o->up = axis_make(map_up(alpha), at.up);
+    o->element = l->nodes / o->down.elements;
+    scatter s = {.curves = curves, .kernels = lq_solver_kernels_get(), .o = o};
     s.to_down = zeros(k * n);
     s.to_up = zeros(k * n);
     const bool ok = o->dd && o->du && o->uu && o->basis && s.to_down && s.to_up;
@@ -158,7 +214,7 @@ static bool operators_make(operators *o, const lq_ndf *ndf, double alpha, const 
         lq_facet_rule rule;
         lq_gauss_make(&rule.outer, l->outer);
         lq_gauss_make(&rule.inner, l->inner);
-        chebyshev_basis(l->nodes, o->basis);
+        chebyshev_basis(o->element, o->basis);
         place_nodes(o, ndf, alpha);
         for (int i = 0; i < l->nodes; i++) {
             scatter_direction(ndf, alpha, o->mu_down[i], &rule, &s);
@@ -187,19 +243,20 @@ static void readout_free(readout *r) {
     free(r->weights);
 }
 
-/* Interpolation weights from the nodes to cosine mu: sum_m T_m(x) basis_mi. */
-static void interpolation_weights(const operators *o, const lq_cosine_map *map, double mu, double *weights) {
-    const double x = fmin(map->scale * asinh(mu * map->inverse_alpha) - 1.0, 1.0), angle = acos(x);
-    for (int i = 0; i < o->nodes; i++) {
-        weights[i] = 0.0;
-        for (int m = 0; m < o->nodes; m++) weights[i] += cos(m * angle) * o->basis[m * o->nodes + i];
+/* Interpolation weights from the nodes to cosine mu: sum_m T_m(x) basis_mi inside the element it lies in. */
+static void interpolation_weights(const operators *o, double mu, double *weights) {
+    const int e = o->down.elements == 2 && mu > o->down.bound[1], n = o->element;
+    const double angle = acos(fmax(fmin(map_forward(&o->down.map[e], mu), 1.0), -1.0));
+    for (int i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (int m = 0; m < n; m++) sum += cos(m * angle) * o->basis[m * n + i];
+        weights[e * n + i] = sum;
     }
 }
 
 static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, double alpha,
                          const lq_curves *curves, const level *l, const double *mu, size_t count) {
     const size_t k = (size_t)curves->count, n = (size_t)l->nodes;
-    const lq_cosine_map map = map_down(alpha);
     *r = (readout){{0}, zeros(count * k), zeros(count * k), zeros(count * n)};
     if (!r->escaping || !r->remaining || !r->weights) {
         readout_free(r);
@@ -211,7 +268,7 @@ static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, doub
     for (size_t m = 0; m < count; m++) {
         lq_first_bounce(ndf, alpha, LQ_CORRELATED, mu[m], curves, &rule, r->escaping + m * k,
                         r->remaining + m * k);
-        interpolation_weights(o, &map, mu[m], r->weights + m * n);
+        interpolation_weights(o, mu[m], r->weights + m * n);
     }
     r->at = (lq_readout){count, r->escaping, r->remaining, r->weights};
     return true;
@@ -281,70 +338,136 @@ static void batch_solve(batch *b, const lq_solver_kernels *kernels, const lq_rea
 
 /* ----------------------------------------------------------------------------- refinement */
 
-/* Everything lq_conductor_energies carries from level to level. */
+/* What is asked for, and where it is kept from level to level. */
 typedef struct refinement {
-    const lq_conductors *materials;
+    const lq_ndf *ndf;
+    double alpha;
     const double *mu;
     size_t mu_count;
-    size_t *active; /* materials not yet within tolerance, ascending */
-    size_t active_count;
-    double *energy;
-    double *change; /* of each material, from the level before */
     double tolerance;
+    double *energy; /* [material * mu_count + m] */
+    double *change; /* of each material, from the level before */
 } refinement;
 
-static void keep(refinement *r, size_t material, const lq_v8 *energy, size_t lane) {
+/* Materials solved together: a basis of curves of their own, and of each its place in the refinement. */
+typedef struct group {
+    const lq_conductors *materials;
+    split at;       /* see operators_make */
+    size_t *active; /* those not yet within tolerance, ascending, as indices into `materials` */
+    size_t active_count;
+    const size_t *place; /* of each of `materials`, or NULL: their own index */
+} group;
+
+static size_t place_of(const group *g, size_t material) {
+    return g->place ? g->place[material] : material;
+}
+
+static void keep(refinement *r, size_t place, const lq_v8 *energy, size_t lane) {
     double change = 0.0;
     for (size_t m = 0; m < r->mu_count; m++) {
         const double now = fmin(fmax(energy[m][lane], 0.0), 1.0);
-        double *kept = r->energy + material * r->mu_count + m;
+        double *kept = r->energy + place * r->mu_count + m;
         change = fmax(change, fabs(now - *kept));
         *kept = now;
     }
-    r->change[material] = change;
+    r->change[place] = change;
 }
 
 /* Two levels that agree by accident would make the estimate too small. It is twice the largest difference
  * over many cosines, and never below a tenth of what was asked for. */
-static double estimate_of(const refinement *r, size_t material) {
-    return fmax(2.0 * r->change[material], 0.1 * r->tolerance);
+static double estimate_of(const refinement *r, size_t place) {
+    return fmax(2.0 * r->change[place], 0.1 * r->tolerance);
 }
 
-static bool solve_level(refinement *r, const lq_ndf *ndf, double alpha, const level *l) {
+static bool solve_batches(refinement *r, const group *g, const operators *o, const readout *read) {
+    const lq_solver_kernels *kernels = lq_solver_kernels_get();
+    batch b;
+    if (!batch_make(&b, o, r->mu_count)) return false;
+    for (size_t first = 0; first < g->active_count; first += LQ_LANES) {
+        const size_t left = g->active_count - first, count = left < LQ_LANES ? left : LQ_LANES;
+        batch_load(&b, g->materials, g->active + first, count);
+        batch_solve(&b, kernels, &read->at, fmin(1e-4 * r->tolerance, 1e-11));
+        for (size_t lane = 0; lane < count; lane++)
+            keep(r, place_of(g, g->active[first + lane]), b.energy, lane);
+    }
+    batch_free(&b);
+    return true;
+}
+
+static bool solve_level(refinement *r, const group *g, const level *l) {
+    const lq_curves *curves = &g->materials->curves;
     operators o;
     readout read;
-    batch b;
-    const lq_solver_kernels *kernels = lq_solver_kernels_get();
-    if (!operators_make(&o, ndf, alpha, &r->materials->curves, l)) return false;
-    bool ok = readout_make(&read, &o, ndf, alpha, &r->materials->curves, l, r->mu, r->mu_count);
+    if (!operators_make(&o, r->ndf, r->alpha, curves, l, g->at)) return false;
+    bool ok = readout_make(&read, &o, r->ndf, r->alpha, curves, l, r->mu, r->mu_count);
     if (ok) {
-        ok = batch_make(&b, &o, r->mu_count);
-        for (size_t first = 0; ok && first < r->active_count; first += LQ_LANES) {
-            const size_t count = r->active_count - first < LQ_LANES ? r->active_count - first : LQ_LANES;
-            batch_load(&b, r->materials, r->active + first, count);
-            batch_solve(&b, kernels, &read.at, fmin(1e-4 * r->tolerance, 1e-11));
-            for (size_t lane = 0; lane < count; lane++) keep(r, r->active[first + lane], b.energy, lane);
-        }
-        if (ok) batch_free(&b);
+        ok = solve_batches(r, g, &o, &read);
         readout_free(&read);
     }
     operators_free(&o);
     return ok;
 }
 
-static void retire(refinement *r) {
+static void retire(const refinement *r, group *g) {
     size_t left = 0;
-    for (size_t i = 0; i < r->active_count; i++)
-        if (estimate_of(r, r->active[i]) > r->tolerance) r->active[left++] = r->active[i];
-    r->active_count = left;
+    for (size_t i = 0; i < g->active_count; i++)
+        if (estimate_of(r, place_of(g, g->active[i])) > r->tolerance) g->active[left++] = g->active[i];
+    g->active_count = left;
 }
 
-static bool refine(refinement *r, const lq_ndf *ndf, double alpha) {
-    r->active_count = r->materials->count;
-    for (size_t m = 0; m < r->active_count; m++) r->active[m] = m;
-    for (int i = 0; i < LEVELS && r->active_count; i++) {
-        if (!solve_level(r, ndf, alpha, &levels[i])) return false;
-        if (i > 0) retire(r);
+/* Where the energies of a material with a critical angle, cos = c*, are not smooth. A rising ray at cosine mu
+ * > n meets no facet below the critical angle, so that its kink is at n = sqrt(1 - c*^2) exactly; a falling
+ * one turns at c* within alpha, and for a wide lobe at n too, where the critical cone touches the horizon. */
+static split critical_split(double alpha, double n, double kappa) {
+    lq_fresnel_singularity found[2];
+    lq_fresnel_singularities(n, kappa, found);
+    const double cosine = cos(found[0].angle), sine = sin(found[0].angle);
+    if (n >= 1.0 || found[0].distance > 0.15 || cosine < 1e-6 || sine < 1e-6) return (split){0.0, 0.0};
+    return (split){alpha < 0.3 ? cosine : sine, sine};
+}
+
+static bool refine(refinement *r, group *g, int from);
+
+/* Go on with the active materials of a group as groups of at most `size`, each with a basis of its own: at
+ * high resolution the operators cost more than the batches, and their cost goes with the number of curves. */
+static bool refine_apart(refinement *r, const group *g, size_t size, int from) {
+    bool ok = true;
+    for (size_t first = 0; ok && first < g->active_count; first += size) {
+        const size_t left = g->active_count - first, count = left < size ? left : size;
+        double *n = malloc(2 * count * sizeof *n);
+        size_t *place = malloc(2 * count * sizeof *place);
+        lq_conductors materials = {0};
+        ok = n && place;
+        for (size_t i = 0; ok && i < count; i++) {
+            const size_t material = g->active[first + i];
+            n[i] = g->materials->n[material];
+            n[count + i] = g->materials->kappa[material];
+            place[i] = place_of(g, material);
+            place[count + i] = i;
+        }
+        ok = ok && lq_conductors_make(&materials, n, n + count, count, 0.01 * r->tolerance, NULL) == LQ_OK;
+        if (ok) {
+            const split none = {0.0, 0.0}, at = count == 1 ? critical_split(r->alpha, n[0], n[1]) : none;
+            group own = {&materials, at, place + count, count, place};
+            ok = refine(r, &own, from);
+        }
+        lq_conductors_free(&materials);
+        free(n);
+        free(place);
+    }
+    return ok;
+}
+
+/* Raise the level for the active materials of `g`, from levels[from] on. */
+static bool refine(refinement *r, group *g, int from) {
+    enum { ALONE = 3, LEVEL_OF_CONCERN = 4 };
+    for (int i = from; i < LEVELS && g->active_count; i++) {
+        if (i >= LEVEL_OF_CONCERN && g->materials->count > 1) {
+            if (g->active_count <= ALONE) return refine_apart(r, g, 1, i);
+            if (2 * g->active_count < g->materials->count) return refine_apart(r, g, g->active_count, i);
+        }
+        if (!solve_level(r, g, &levels[i])) return false;
+        if (i > 0) retire(r, g);
     }
     return true;
 }
@@ -359,15 +482,19 @@ static void smooth_energies(const lq_conductors *materials, const double *mu, si
 static lq_status solve_slice(const lq_ndf *ndf, double alpha, const lq_conductors *materials,
                              const double *mu, size_t mu_count, double tolerance, double *energy,
                              double *estimate, lq_error *error) {
-    refinement r = {.materials = materials, .mu = mu, .mu_count = mu_count, .energy = energy};
-    r.tolerance = tolerance;
-    r.active = malloc(materials->count * sizeof *r.active);
-    r.change = malloc(materials->count * sizeof *r.change);
-    const bool ok = r.active && r.change && refine(&r, ndf, alpha);
-    *estimate = 0.0;
-    for (size_t m = 0; ok && m < materials->count; m++) *estimate = fmax(*estimate, estimate_of(&r, m));
-    *estimate += materials->missed;
-    free(r.active);
+    refinement r = {ndf, alpha, mu, mu_count, 0.0, energy, malloc(materials->count * sizeof(double))};
+    /* The representation of the materials takes its share of the tolerance first. */
+    r.tolerance = fmax(tolerance - materials->missed, 0.5 * tolerance);
+    group all = {.materials = materials, .active_count = materials->count};
+    all.active = malloc(materials->count * sizeof *all.active);
+    bool ok = r.change && all.active;
+    for (size_t m = 0; ok && m < materials->count; m++) all.active[m] = m;
+    if (materials->count == 1) all.at = critical_split(alpha, materials->n[0], materials->kappa[0]);
+    ok = ok && refine(&r, &all, 0);
+    *estimate = materials->missed;
+    for (size_t m = 0; ok && m < materials->count; m++)
+        *estimate = fmax(*estimate, estimate_of(&r, m) + materials->missed);
+    free(all.active);
     free(r.change);
     return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory to solve %zu materials", materials->count);
 }
@@ -483,7 +610,7 @@ lq_status lq_conductor_orders(const lq_ndf *ndf, double alpha, const lq_conducto
     operators o;
     readout read;
     batch b;
-    bool ok = operators_make(&o, ndf, alpha, &material->curves, &l);
+    bool ok = operators_make(&o, ndf, alpha, &material->curves, &l, (split){0.0, 0.0});
     if (ok) {
         ok = readout_make(&read, &o, ndf, alpha, &material->curves, &l, &mu, 1);
         if (ok && (ok = batch_make(&b, &o, 1))) {

@@ -14,11 +14,11 @@ enum {
  * by value the calling convention would depend on the instruction set. */
 typedef double lq_v8 __attribute__((vector_size(64)));
 
-/* Where a cosine lies on the axis x in [-1,1] of the interpolation nodes:
- *     x = scale asinh(t / alpha) - 1,
+/* Where a cosine lies on the axis of the interpolation nodes:
+ *     x = scale asinh(t / alpha) + shift,
  * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. */
 typedef struct lq_cosine_map {
-    double inverse_alpha, scale;
+    double inverse_alpha, scale, shift;
     int half_angle;
 } lq_cosine_map;
 

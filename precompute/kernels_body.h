@@ -27,44 +27,74 @@ static inline double log_positive(double x) {
 
 static void map_cosines(const lq_cosine_map *map, size_t count, const double *restrict cosine,
                         double *restrict x) {
-    const double inverse = map->inverse_alpha, scale = map->scale;
+    const double inverse = map->inverse_alpha, scale = map->scale, shift = map->shift;
     const double half = map->half_angle ? 1.0 : 0.0;
     for (size_t i = 0; i < count; i++) {
         const double sine2 = (1.0 - cosine[i]) * (1.0 + cosine[i]);
         const double t = 2.0 * cosine[i] / (1.0 + sqrt(sine2));
         const double y = inverse * (cosine[i] + half * (t - cosine[i]));
-        x[i] = scale * log_positive(y + sqrt(y * y + 1.0)) - 1.0;
+        x[i] = scale * log_positive(y + sqrt(y * y + 1.0)) + shift;
     }
+}
+
+/* Add the moments of `groups` vectors of facets to sum[m]. The recurrence of T_m is started from the weight
+ * instead of 1. Several vectors at once hide its latency, and share the load and store of a sum. */
+static inline void moments_of(int groups, const double *x, const double *w, int count, lq_v8 *sum) {
+    lq_v8 two_x[4], before[4], now[4];
+    for (int g = 0; g < groups; g++) {
+        memcpy(&now[g], x + g * LQ_LANES, sizeof now[g]);
+        memcpy(&before[g], w + g * LQ_LANES, sizeof before[g]);
+        two_x[g] = now[g] + now[g];
+        now[g] *= before[g];
+        sum[0] += before[g];
+    }
+    for (int m = 1; m < count; m++) {
+        lq_v8 total = sum[m];
+        for (int g = 0; g < groups; g++) {
+            const lq_v8 next = two_x[g] * now[g] - before[g];
+            total += now[g];
+            before[g] = now[g];
+            now[g] = next;
+        }
+        sum[m] = total;
+    }
+}
+
+/* The sums of the lanes of eight vectors: three rounds of adding halves. */
+static inline void add_lanes(const lq_v8 *v, double *restrict out) {
+    typedef long long lq_i8 __attribute__((vector_size(64)));
+    const lq_i8 low1 = {0, 8, 2, 10, 4, 12, 6, 14}, high1 = {1, 9, 3, 11, 5, 13, 7, 15};
+    const lq_i8 low2 = {0, 1, 8, 9, 4, 5, 12, 13}, high2 = {2, 3, 10, 11, 6, 7, 14, 15};
+    const lq_i8 low4 = {0, 1, 2, 3, 8, 9, 10, 11}, high4 = {4, 5, 6, 7, 12, 13, 14, 15};
+    lq_v8 a[4], b[2];
+    for (int i = 0; i < 4; i++)
+        a[i] = __builtin_shuffle(v[2 * i], v[2 * i + 1], low1) +
+               __builtin_shuffle(v[2 * i], v[2 * i + 1], high1);
+    for (int i = 0; i < 2; i++)
+        b[i] = __builtin_shuffle(a[2 * i], a[2 * i + 1], low2) +
+               __builtin_shuffle(a[2 * i], a[2 * i + 1], high2);
+    const lq_v8 total = __builtin_shuffle(b[0], b[1], low4) + __builtin_shuffle(b[0], b[1], high4);
+    for (int l = 0; l < LQ_LANES; l++) out[l] += total[l];
 }
 
 static void moments(const lq_cosine_map *map, size_t count, const double *cosine, const double *weight,
                     int count_moments, double *out) {
     double x[LQ_FACETS_MAX], w[LQ_FACETS_MAX];
-    lq_v8 sum[LQ_NODES_MAX];
-    const size_t padded = (count + LQ_LANES - 1) / LQ_LANES * LQ_LANES;
+    lq_v8 sum[LQ_NODES_MAX + LQ_LANES];
+    const size_t groups = (count + LQ_LANES - 1) / LQ_LANES;
+    const int padded = (count_moments + LQ_LANES - 1) / LQ_LANES * LQ_LANES;
     map_cosines(map, count, cosine, x);
-    for (size_t i = 0; i < padded; i++) w[i] = i < count ? weight[i] : 0.0;
-    for (size_t i = count; i < padded; i++) x[i] = 0.0;
-    memset(sum, 0, (size_t)count_moments * sizeof sum[0]);
-    for (size_t i = 0; i < padded; i += LQ_LANES) {
-        lq_v8 two_x, before, now;
-        memcpy(&now, x + i, sizeof now);
-        memcpy(&before, w + i, sizeof before);
-        /* The recurrence of T_m, started from the weight instead of 1. */
-        two_x = now + now;
-        now *= before;
-        sum[0] += before;
-        for (int m = 1; m < count_moments; m++) {
-            sum[m] += now;
-            const lq_v8 next = two_x * now - before;
-            before = now;
-            now = next;
-        }
-    }
-    for (int m = 0; m < count_moments; m++) {
-        double total = 0.0;
-        for (int l = 0; l < LQ_LANES; l++) total += sum[m][l];
-        out[m] += total;
+    for (size_t i = 0; i < groups * LQ_LANES; i++) w[i] = i < count ? weight[i] : 0.0;
+    for (size_t i = count; i < groups * LQ_LANES; i++) x[i] = 0.0;
+    memset(sum, 0, (size_t)padded * sizeof sum[0]);
+    size_t g = 0;
+    for (; g + 4 <= groups; g += 4) moments_of(4, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    for (; g + 2 <= groups; g += 2) moments_of(2, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    if (g < groups) moments_of(1, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    for (int m = 0; m < count_moments; m += LQ_LANES) {
+        double eight[LQ_LANES] = {0.0};
+        add_lanes(sum + m, eight);
+        for (int l = 0; l < LQ_LANES && m + l < count_moments; l++) out[m + l] += eight[l];
     }
 }
 

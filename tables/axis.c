@@ -38,10 +38,14 @@ lq_status lq_name_check(const char *what, const char *name, lq_error *error) {
 
 const char *lq_map_name(lq_map map) {
     switch (map) {
-    case LQ_MAP_LINEAR: return "linear";
-    case LQ_MAP_SQRT: return "sqrt";
-    case LQ_MAP_POWER: return "power";
-    case LQ_MAP_CUSTOM: return "custom";
+    case LQ_MAP_LINEAR:
+        return "linear";
+    case LQ_MAP_SQRT:
+        return "sqrt";
+    case LQ_MAP_POWER:
+        return "power";
+    case LQ_MAP_CUSTOM:
+        return "custom";
     }
     return "unknown";
 }
@@ -60,17 +64,23 @@ bool lq_map_find(const char *name, lq_map *map) {
 /* w: [0,1] -> [0,1], see lq_map. */
 static double warp(const lq_axis *axis, double u) {
     switch (axis->map) {
-    case LQ_MAP_SQRT: return u * u;
-    case LQ_MAP_POWER: return pow(u, axis->exponent);
-    default: return u;
+    case LQ_MAP_SQRT:
+        return u * u;
+    case LQ_MAP_POWER:
+        return pow(u, axis->exponent);
+    default:
+        return u;
     }
 }
 
 static double unwarp(const lq_axis *axis, double w) {
     switch (axis->map) {
-    case LQ_MAP_SQRT: return sqrt(w);
-    case LQ_MAP_POWER: return pow(w, 1 / axis->exponent);
-    default: return w;
+    case LQ_MAP_SQRT:
+        return sqrt(w);
+    case LQ_MAP_POWER:
+        return pow(w, 1 / axis->exponent);
+    default:
+        return w;
     }
 }
 
@@ -86,10 +96,8 @@ static size_t search(const lq_axis *axis, double x) {
     size_t low = 0, high = axis->size - 1;
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
-        if (axis->nodes[middle] <= x)
-            low = middle;
-        else
-            high = middle;
+        if (axis->nodes[middle] <= x) low = middle;
+        else high = middle;
     }
     return low;
 }
@@ -129,13 +137,14 @@ static lq_status check_size(const char *name, size_t size, lq_error *error) {
 static lq_status check_range(const lq_axis *axis, lq_error *error) {
     double min = axis->min, max = axis->max;
     if (!isfinite(min) || !isfinite(max) || !isfinite(max - min))
-        return lq_fail(error, LQ_BAD_INPUT, "axis '%s' from %g to %g; accepted are finite numbers", axis->name,
-                       min, max);
-    if (axis->size == 1 && min != max)
-        return lq_fail(error, LQ_BAD_INPUT,
-                       "axis '%s' has one node but goes from %.17g to %.17g; accepted are equal ends, or 2 or "
-                       "more nodes",
+        return lq_fail(error, LQ_BAD_INPUT, "axis '%s' from %g to %g; accepted are finite numbers",
                        axis->name, min, max);
+    if (axis->size == 1 && min != max)
+        return lq_fail(
+            error, LQ_BAD_INPUT,
+            "axis '%s' has one node but goes from %.17g to %.17g; accepted are equal ends, or 2 or "
+            "more nodes",
+            axis->name, min, max);
     if (axis->size > 1 && !(min < max))
         return lq_fail(error, LQ_BAD_INPUT,
                        "axis '%s' goes from %.17g to %.17g; accepted is a minimum below the maximum",
@@ -158,11 +167,12 @@ static lq_status check_map(lq_axis *axis, lq_map map, double exponent, lq_error 
 static lq_status check_increasing(const lq_axis *axis, lq_error *error) {
     for (size_t i = 0; i + 1 < axis->size; i++)
         if (!(axis->nodes[i] < axis->nodes[i + 1]))
-            return lq_fail(error, LQ_BAD_INPUT,
-                           "axis '%s': node %zu is %.17g and the next %.17g; accepted are strictly increasing "
-                           "nodes%s",
-                           axis->name, i, axis->nodes[i], axis->nodes[i + 1],
-                           axis->map == LQ_MAP_CUSTOM ? "" : " (fewer of them, or a smaller exponent)");
+            return lq_fail(
+                error, LQ_BAD_INPUT,
+                "axis '%s': node %zu is %.17g and the next %.17g; accepted are strictly increasing "
+                "nodes%s",
+                axis->name, i, axis->nodes[i], axis->nodes[i + 1],
+                axis->map == LQ_MAP_CUSTOM ? "" : " (fewer of them, or a smaller exponent)");
     return LQ_OK;
 }
 
@@ -312,14 +322,11 @@ lq_status lq_axis_parse(lq_axis *axis, const char *name, const char *text, lq_er
     char *copy = strdup(text);
     if (!copy) return lq_fail(error, LQ_NO_MEMORY, "axis '%s': no memory", name);
     double value;
-    if (strchr(copy, ':'))
-        status = parse_range(axis, name, copy, error);
-    else if (strchr(copy, ','))
-        status = parse_list(axis, name, copy, error);
+    if (strchr(copy, ':')) status = parse_range(axis, name, copy, error);
+    else if (strchr(copy, ',')) status = parse_list(axis, name, copy, error);
     else if (parse_number(copy, &value))
         status = lq_axis_make(axis, name, value, value, 1, LQ_MAP_LINEAR, 1, error);
-    else
-        status = refuse(name, copy, "is not a number", error);
+    else status = refuse(name, copy, "is not a number", error);
     free(copy);
     return status;
 }

@@ -22,7 +22,8 @@ static size_t physical_memory(void) {
 
 static lq_status check_counts(int axis_count, int channel_count, lq_error *error) {
     if (axis_count < 1 || axis_count > LQ_MAX_AXES)
-        return lq_fail(error, LQ_BAD_INPUT, "a table of %d axes; accepted are 1 to %d", axis_count, LQ_MAX_AXES);
+        return lq_fail(error, LQ_BAD_INPUT, "a table of %d axes; accepted are 1 to %d", axis_count,
+                       LQ_MAX_AXES);
     if (channel_count < 1 || channel_count > LQ_MAX_CHANNELS)
         return lq_fail(error, LQ_BAD_INPUT, "a table of %d channels; accepted are 1 to %d", channel_count,
                        LQ_MAX_CHANNELS);
@@ -99,10 +100,8 @@ lq_status lq_table_create(lq_table **table, const lq_axis *axes, int axis_count,
     lq_table *made = calloc(1, sizeof *made);
     if (!made) return lq_fail(error, LQ_NO_MEMORY, "no memory for a table");
     status = fill(made, axes, axis_count, channel_names, channel_count, error);
-    if (status)
-        lq_table_free(made);
-    else
-        *table = made;
+    if (status) lq_table_free(made);
+    else *table = made;
     return status;
 }
 

@@ -166,8 +166,8 @@ refused 'nodes' precompute fgd --axis mu=0:1:99999999999 -o folder/t.exr
 refused 'entries' precompute fgd --axis mu=0:1:1000000 --axis alpha=0:1:1000000 -o folder/t.exr
 refused 'No such file or directory' precompute fgd -o folder/none/t.exr
 refused 'cannot write /proc/t.exr' precompute fgd -o /proc/t.exr
-refused 'not a regular file' precompute fgd --format exr -o /dev/full
-refused 'not a regular file' precompute fgd --format exr -o folder
+refused 'No space left' precompute fgd "${small[@]}" --format npy -o /dev/full
+refused 'is a folder' precompute fgd --format exr -o folder
 [ -c /dev/full ] || fail "/dev/full was replaced"
 
 run 0 precompute fgd "${small[@]}" --threads 1 -o files/one.exr

@@ -1,0 +1,85 @@
+/* The list of evaluators, and what every computation checks before it starts. */
+#include "precompute/evaluator.h"
+
+#include "precompute/kinds.h"
+#include "tables/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const lq_evaluator *lq_evaluator_find(const char *id) {
+    static const lq_evaluator *const all[] = {&lq_evaluate_fgd, &lq_evaluate_albedo,
+                                              &lq_evaluate_albedo_average, &lq_evaluate_dfg};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        if (strcmp(all[i]->id, id) == 0) return all[i];
+    return NULL;
+}
+
+size_t lq_slice_entries(const lq_job *job, const lq_evaluator *evaluator) {
+    size_t entries = 1;
+    for (int a = 0; a < job->kind->axis_count; a++)
+        if (a != evaluator->slice_axis) entries *= job->size[a];
+    return entries;
+}
+
+static lq_status check_nodes(const lq_job *job, lq_error *error) {
+    for (int a = 0; a < job->kind->axis_count; a++) {
+        const lq_axis_info *axis = &job->kind->axes[a];
+        for (size_t i = 0; i < job->size[a]; i++) {
+            const double x = job->nodes[a][i];
+            if (!(x >= axis->lowest && x <= axis->highest))
+                return lq_fail(error, LQ_BAD_INPUT, "%s = %g is out of range; accepted: %g to %g (%s)",
+                               axis->name, x, axis->lowest, axis->highest, axis->meaning);
+        }
+    }
+    return LQ_OK;
+}
+
+static lq_status choose_ndf(lq_job *job, const char *id, lq_error *error) {
+    char known[256] = "";
+    job->ndf = lq_ndf_find(id);
+    if (job->ndf) return LQ_OK;
+    for (size_t i = 0, used = 0; i < lq_ndf_builtin_count() && used < sizeof known; i++)
+        used +=
+            (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", lq_ndf_builtin(i)->id);
+    return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'; known: %s", id, known);
+}
+
+static lq_status check_options(const lq_kind *kind, const lq_settings *settings, lq_error *error) {
+    const lq_settings plain = lq_settings_default();
+    if (settings->struct_size != sizeof *settings)
+        return lq_fail(error, LQ_BAD_INPUT, "settings of another version; start from lq_settings_default()");
+    if (!(kind->takes & LQ_TAKES_SCATTERING) && settings->scattering != plain.scattering)
+        return lq_fail(error, LQ_BAD_INPUT, "%s takes no scattering option", kind->id);
+    if (!(kind->takes & LQ_TAKES_MASKING) && settings->masking != plain.masking)
+        return lq_fail(error, LQ_BAD_INPUT, "%s takes no masking option", kind->id);
+    if ((kind->takes & LQ_TAKES_SCATTERING) && settings->scattering == LQ_MULTIPLE &&
+        settings->masking == LQ_SEPARABLE)
+        return lq_fail(error, LQ_BAD_INPUT,
+                       "separable masking has no multiple scattering; accepted: correlated, or single "
+                       "scattering");
+    return LQ_OK;
+}
+
+static lq_status choose_tolerance(lq_job *job, double asked, lq_error *error) {
+    job->tolerance = asked > 0.0 ? asked : job->kind->tolerance;
+    if (!(asked >= 0.0) || job->tolerance < job->kind->finest_tolerance || job->tolerance > 0.1)
+        return lq_fail(error, LQ_BAD_INPUT, "tolerance %g cannot be asked of %s; accepted: %g to 0.1", asked,
+                       job->kind->id, job->kind->finest_tolerance);
+    return LQ_OK;
+}
+
+lq_status lq_job_make(lq_job *job, const lq_kind *kind, const lq_settings *settings, const size_t *size,
+                      const double *const *nodes, lq_error *error) {
+    *job = (lq_job){.kind = kind, .scattering = settings->scattering, .masking = settings->masking};
+    for (int a = 0; a < kind->axis_count; a++) {
+        job->size[a] = size[a];
+        job->nodes[a] = nodes[a];
+    }
+    lq_status status = check_options(kind, settings, error);
+    if (status == LQ_OK) status = choose_ndf(job, settings->ndf, error);
+    if (status == LQ_OK) status = choose_tolerance(job, settings->tolerance, error);
+    if (status == LQ_OK) status = check_nodes(job, error);
+    return status;
+}

@@ -1,0 +1,33 @@
+/* output.h - files that appear whole or not at all; every writer of the project goes through here. */
+#ifndef LQ_TABLES_OUTPUT_H
+#define LQ_TABLES_OUTPUT_H
+
+#include <stdint.h>
+
+#include "lacquer.h"
+
+typedef struct lq_output lq_output;
+
+/* Start a file that will become `path` at lq_output_commit, and not before: until then the bytes go to an
+ * unnamed (or, where the file system has none, a temporary) file in the same folder. A target that exists
+ * and is not a regular file (/dev/null, /dev/full, a pipe) is written directly. */
+lq_status lq_output_open(lq_output **output, const char *path, lq_error *error);
+
+/* Append bytes, or text; both are buffered. */
+lq_status lq_output_write(lq_output *output, const void *bytes, size_t size, lq_error *error);
+lq_status lq_output_print(lq_output *output, lq_error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Write bytes at an offset, unbuffered; several threads may do so at once. One file is written either by
+ * this call or by the two above. A pipe takes them only in order. */
+lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, uint64_t offset,
+                             lq_error *error);
+
+/* Publish the file under its name, replacing an older one, and free `output`. On an error nothing is left
+ * behind and the older file stands. */
+lq_status lq_output_commit(lq_output *output, lq_error *error);
+
+/* Forget the file and free `output` (NULL is fine): as if it had never been opened. */
+void lq_output_abandon(lq_output *output);
+
+#endif

@@ -1,0 +1,15 @@
+/* What made a stored table: its kind and settings, rebuilt from its facts. */
+#ifndef LACQUER_VALIDATE_ORIGIN_H
+#define LACQUER_VALIDATE_ORIGIN_H
+
+#include "lacquer.h"
+
+typedef struct lq_origin {
+    const lq_kind *kind;
+    lq_settings settings; /* its ndf points into the table's facts */
+} lq_origin;
+
+/* LQ_FORMAT where a fact is missing or unknown, or axes and channels are not those of the kind. */
+lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error);
+
+#endif

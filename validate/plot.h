@@ -1,0 +1,40 @@
+/* Charts as SVG: a few named series over linear or logarithmic axes, readable on light and dark pages. */
+#ifndef LACQUER_VALIDATE_PLOT_H
+#define LACQUER_VALIDATE_PLOT_H
+
+#include "lacquer.h"
+
+typedef struct lq_plot_axis {
+    const char *label;
+    bool logarithmic;
+} lq_plot_axis;
+
+enum { LQ_PLOT_HUES = 4, LQ_PLOT_MAX_SERIES = 8 };
+
+typedef struct lq_series {
+    const char *name;
+    size_t count;
+    const double *x, *y;       /* a point that is not finite, or not positive on a log axis, is left out */
+    const char *const *labels; /* a short text beside each point, or NULL */
+    int hue;                   /* 0 to LQ_PLOT_HUES - 1 */
+    bool secondary;            /* dashed and hollow: the same thing measured another way */
+} lq_series;
+
+/* An arrow at height y from x_from to x_to that states the distance between two curves. */
+typedef struct lq_plot_span {
+    double y, x_from, x_to;
+    const char *label;
+} lq_plot_span;
+
+typedef struct lq_plot {
+    const char *title, *subtitle; /* subtitle may be NULL */
+    lq_plot_axis x, y;
+    const lq_series *series;
+    size_t series_count;
+    const lq_plot_span *span; /* or NULL */
+} lq_plot;
+
+/* LQ_BAD_INPUT where there is nothing to draw. The file appears whole or not at all. */
+lq_status lq_plot_write(const lq_plot *plot, const char *path, lq_error *error);
+
+#endif

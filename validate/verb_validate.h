@@ -1,0 +1,54 @@
+/* verb_validate.h - what the parts of `lacquer validate` share: the request, the lists it compares. */
+#ifndef LACQUER_VALIDATE_VERB_VALIDATE_H
+#define LACQUER_VALIDATE_VERB_VALIDATE_H
+
+#include "cli/progress.h"
+#include "validate/compare.h"
+#include "validate/draw.h"
+#include "validate/origin.h"
+
+#include <stdbool.h>
+
+typedef struct validate_request {
+    const char *file;
+    bool walk, json;
+    size_t samples, points, seed;
+    double budget; /* 0: none */
+    int threads;
+} validate_request;
+
+/* The lists, in the order they are reported. */
+enum { STORED_EXACT, BETWEEN_EXACT, STORED_WALK, BETWEEN_WALK, VALIDATE_LISTS };
+
+/* One list: `channels` comparisons at each of its points, point by point. */
+typedef struct validate_list {
+    const char *key, *title;
+    const lq_drawn *at;
+    lq_compared *compared;
+    size_t count;
+    lq_comparison result;
+    bool used, judged; /* judged: its scores decide; otherwise only the budget does */
+} validate_list;
+
+typedef struct validate_job {
+    validate_request request;
+    lq_table *table;
+    lq_origin origin;
+    int walk_threads;
+    size_t channels, stored, between; /* points of either sort */
+    lq_drawn *at;                     /* the stored ones, then those between */
+    validate_list lists[VALIDATE_LISTS];
+} validate_job;
+
+/* Draw the points, compute everything at each and reduce the lists. */
+lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);
+void validate_free(validate_job *job);
+
+/* What is wrong, in a few words; NULL: nothing. */
+const char *validate_complaint(const validate_job *job);
+
+void validate_print_text(const validate_job *job);
+/* False where the file's name or facts are not UTF-8, which JSON needs. */
+bool validate_print_json(const validate_job *job);
+
+#endif
