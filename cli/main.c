@@ -85,9 +85,9 @@ int main(int argc, char **argv) {
     signal(SIGXFSZ, SIG_IGN);
     cli_catch_signals();
     int code = run(argc, argv);
-    if (ferror(stdout) || fflush(stdout) != 0 || fclose(stdout) != 0) {
-        int failed = cli_fail("cannot write to standard output: %s", strerror(errno));
-        return code == CLI_DONE ? failed : code;
-    }
-    return code;
+    if (code == CLI_FAILED || code == CLI_INTERRUPTED) return code; /* one line is said already */
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    return cli_fail("cannot write to standard output: %s",
+                    errno ? strerror(errno) : "an earlier write failed");
 }

@@ -13,18 +13,24 @@ enum { BAR_WIDTH = 30 };
 static const double SHOW_AFTER = 1.0; /* seconds: shorter jobs stay silent */
 static const double SHOW_EVERY = 0.1; /* seconds between two drawings */
 
-/* A signal handler can reach nothing but a global. */
-static volatile sig_atomic_t interrupted;
+/* A signal handler can reach nothing but globals. */
+static volatile sig_atomic_t interrupted, bar_on_screen;
 
-static void set_flag(int number) {
-    (void)number;
-    interrupted = 1;
-}
+static const char ERASE_LINE[] = "\r\033[K";
+enum { PATIENCE = 1 }; /* seconds that the work gets to stop in order */
 
 static void exit_now(int number) {
     (void)number;
+    if (bar_on_screen && write(STDERR_FILENO, ERASE_LINE, sizeof ERASE_LINE - 1) < 0) _exit(CLI_INTERRUPTED);
     cli_message_interrupted();
     _exit(CLI_INTERRUPTED);
+}
+
+/* Work between two reports can be long: after a while, or at the second Ctrl-C, it is cut short. */
+static void ask_to_stop(int number) {
+    if (interrupted) exit_now(number);
+    interrupted = 1;
+    alarm(PATIENCE);
 }
 
 bool cli_interrupted(void) {
@@ -58,7 +64,7 @@ static bool report(void *user, double fraction) {
     if (bar->terminal && now - bar->start >= SHOW_AFTER && now - bar->shown >= SHOW_EVERY) {
         draw(bar, fraction, now - bar->start);
         bar->shown = now;
-        bar->drawn = true;
+        bar_on_screen = 1;
     }
     return !interrupted;
 }
@@ -68,6 +74,8 @@ static void on_signals(void (*handler)(int)) {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = exit_now;
+    sigaction(SIGALRM, &action, NULL);
 }
 
 void cli_catch_signals(void) {
@@ -77,10 +85,12 @@ void cli_catch_signals(void) {
 void cli_progress_begin(cli_progress *bar, const char *label) {
     *bar = (cli_progress){.label = label, .start = cli_seconds(), .terminal = isatty(STDERR_FILENO) == 1};
     bar->progress = (lq_progress){.report = report, .user = bar};
-    on_signals(set_flag);
+    on_signals(ask_to_stop);
 }
 
 void cli_progress_end(cli_progress *bar) {
-    if (bar->drawn) fprintf(stderr, "\r\033[K");
+    alarm(0);
     on_signals(exit_now);
+    if (bar->shown > 0) fputs(ERASE_LINE, stderr);
+    bar_on_screen = 0;
 }

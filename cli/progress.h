@@ -7,9 +7,10 @@
  *     if (status != LQ_OK) return cli_fail_status(status, &error);   // LQ_CANCELLED: exit 130
  *
  * The bar shows on stderr when that is a terminal and the job takes more than a second. From begin to
- * end SIGINT and SIGTERM only set a flag, which makes the next report return false, so that the work is
- * taken down in order. At any other time they print one line and exit with CLI_INTERRUPTED at once: files
- * being written have no name yet (tables/output.h), so nothing is left. */
+ * end SIGINT and SIGTERM first set a flag, which makes the next report return false, so that the work is
+ * taken down in order. If that takes over a second, at a second Ctrl-C, and at any time outside begin and
+ * end, they print one line and exit with CLI_INTERRUPTED at once: a file being written has no name yet
+ * (tables/output.h), so nothing is left. */
 #ifndef CLI_PROGRESS_H
 #define CLI_PROGRESS_H
 
@@ -19,7 +20,7 @@ typedef struct cli_progress {
     lq_progress progress; /* hand this to the library */
     const char *label;
     double start, shown; /* seconds of the monotonic clock */
-    bool terminal, drawn;
+    bool terminal;
 } cli_progress;
 
 void cli_progress_begin(cli_progress *bar, const char *label);

@@ -2,7 +2,9 @@
 # a skip. Names that end in _slow get the label "slow", which the asan preset leaves out.
 pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
 
+# Tests run side by side: threads that spin while they wait would take the cores from each other.
 set(test_environment
+    "OMP_WAIT_POLICY=passive"
     "LACQUER=$<TARGET_FILE:lacquer-program>" "LACQUER_SOURCE=${PROJECT_SOURCE_DIR}"
     "LACQUER_BUILD=${PROJECT_BINARY_DIR}" "CMAKE_COMMAND=${CMAKE_COMMAND}" "CC=${CMAKE_C_COMPILER}")
 
@@ -19,10 +21,10 @@ foreach(source IN LISTS test_programs)
   get_filename_component(name ${source} NAME_WE)
   add_executable(${name} ${source})
   lacquer_warnings(${name})
-  target_compile_definitions(${name} PRIVATE _GNU_SOURCE)
+  target_compile_definitions(${name} PRIVATE ${system_interfaces})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${RANDOM123_INCLUDE_DIR})
   target_link_libraries(${name} PRIVATE lacquer-library PkgConfig::CMOCKA PkgConfig::JANSSON
-                                        OpenEXR::OpenEXRCore OpenMP::OpenMP_C m)
+                                        OpenEXR::OpenEXRCore ZLIB::ZLIB OpenMP::OpenMP_C m)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   lacquer_test_properties(${name})
 endforeach()

@@ -41,8 +41,8 @@ static bool crowded(const lq_panels *panels, double at, double room) {
 void lq_panels_grade(lq_panels *panels, double centre, double width, double ratio) {
     const double from = panels->at[0], to = panels->at[panels->count - 1];
     for (double w = width; centre - w > from || centre + w < to; w *= ratio) {
-        if (!crowded(panels, centre - w, 0.3 * w)) lq_panels_add(panels, centre - w, false);
-        if (!crowded(panels, centre + w, 0.3 * w)) lq_panels_add(panels, centre + w, false);
+        if (!crowded(panels, centre - w, 0.03 * w)) lq_panels_add(panels, centre - w, false);
+        if (!crowded(panels, centre + w, 0.03 * w)) lq_panels_add(panels, centre + w, false);
     }
 }
 
@@ -60,7 +60,7 @@ void lq_panels_separate(lq_panels *panels) {
     for (int p = 0; p + 1 < panels->count;) {
         const double width = panels->at[p + 1] - panels->at[p];
         const int before = panels->count;
-        if (width > 1e-9 && nearest_foreign(panels, p) < 0.25 * width)
+        if (width > 1e-9 && nearest_foreign(panels, p) < 0.2 * width)
             lq_panels_add(panels, panels->at[p] + 0.5 * width, false);
         if (panels->count == before) p++;
     }

@@ -21,8 +21,8 @@ typedef struct level {
     int nodes, outer, inner;
 } level;
 
-static const level levels[] = {{12, 8, 16},  {16, 10, 16}, {24, 12, 24}, {32, 16, 24},
-                               {48, 24, 32}, {64, 32, 40}, {96, 40, 56}, {128, 48, 64}};
+static const level levels[] = {{12, 8, 16},  {16, 10, 16}, {24, 12, 24},  {32, 16, 24}, {48, 24, 32},
+                               {64, 32, 40}, {96, 40, 56}, {128, 48, 64}, {192, 56, 64}};
 enum { LEVELS = sizeof levels / sizeof levels[0] };
 
 /* ---------------------------------------------------------------------------------- nodes */
@@ -328,7 +328,9 @@ static void batch_load(batch *b, const lq_conductors *materials, const size_t *w
  * raises a ray, so that one sweep would do were the basis local. It takes 4 to 12. */
 enum { SWEEPS_MAX = 400 };
 
-static void batch_solve(batch *b, const lq_solver_kernels *kernels, const lq_readout *at, double settle) {
+static void batch_solve(batch *b, const lq_solver_kernels *kernels, const lq_readout *at, double tolerance) {
+    const double settle = fmin(1e-4 * tolerance, 1e-11);
+    b->s.negligible = 0.01 * tolerance;
     kernels->assemble(&b->s);
     memset(b->s.r, 0, b->s.stride * sizeof(lq_v8));
     for (int sweep = 0; sweep < SWEEPS_MAX && kernels->sweep(&b->s) > settle; sweep++) continue;
@@ -386,7 +388,7 @@ static bool solve_batches(refinement *r, const group *g, const operators *o, con
     for (size_t first = 0; first < g->active_count; first += LQ_LANES) {
         const size_t left = g->active_count - first, count = left < LQ_LANES ? left : LQ_LANES;
         batch_load(&b, g->materials, g->active + first, count);
-        batch_solve(&b, kernels, &read->at, fmin(1e-4 * r->tolerance, 1e-11));
+        batch_solve(&b, kernels, &read->at, r->tolerance);
         for (size_t lane = 0; lane < count; lane++)
             keep(r, place_of(g, g->active[first + lane]), b.energy, lane);
     }
@@ -464,6 +466,7 @@ static bool refine(refinement *r, group *g, int from) {
     for (int i = from; i < LEVELS && g->active_count; i++) {
         if (i >= LEVEL_OF_CONCERN && g->materials->count > 1) {
             if (g->active_count <= ALONE) return refine_apart(r, g, 1, i);
+            if (i == LEVELS - 1) return refine_apart(r, g, 1, i - 1);
             if (2 * g->active_count < g->materials->count) return refine_apart(r, g, g->active_count, i);
         }
         if (!solve_level(r, g, &levels[i])) return false;
@@ -472,11 +475,18 @@ static bool refine(refinement *r, group *g, int from) {
     return true;
 }
 
-static void smooth_energies(const lq_conductors *materials, const double *mu, size_t mu_count,
-                            double *energy) {
-    for (size_t i = 0; i < materials->count; i++)
+/* The limit alpha = 0. At alpha > 0 light at cosines of a few alpha still leaves at such cosines, so that it
+ * is off by no more than what those absorb. */
+static double smooth_energies(double alpha, const lq_conductors *materials, const double *mu, size_t mu_count,
+                              double *energy) {
+    double error = 1e-15;
+    for (size_t i = 0; i < materials->count; i++) {
+        const double n = materials->n[i], kappa = materials->kappa[i];
         for (size_t m = 0; m < mu_count; m++)
-            energy[i * mu_count + m] = lq_fresnel_conductor(mu[m], materials->n[i], materials->kappa[i]);
+            energy[i * mu_count + m] = lq_fresnel_conductor(mu[m], n, kappa);
+        if (alpha > 0.0) error = fmax(error, 1.0 - lq_fresnel_conductor(30.0 * alpha, n, kappa));
+    }
+    return error;
 }
 
 static lq_status solve_slice(const lq_ndf *ndf, double alpha, const lq_conductors *materials,
@@ -535,8 +545,7 @@ lq_status lq_conductor_energies(const lq_ndf *ndf, double alpha, const lq_conduc
                                 const double *mu, size_t mu_count, double tolerance, double *energy,
                                 double *estimate, lq_error *error) {
     if (alpha < LQ_SMOOTH_ALPHA) {
-        *estimate = alpha > 0.0 ? LQ_SMOOTH_ERROR : 1e-15;
-        smooth_energies(materials, mu, mu_count, energy);
+        *estimate = smooth_energies(alpha, materials, mu, mu_count, energy);
         return LQ_OK;
     }
     return (mu_count < 2 * PROBES ? solve_with_probes : solve_slice)(ndf, alpha, materials, mu, mu_count,
@@ -602,10 +611,10 @@ lq_status lq_conductor_orders(const lq_ndf *ndf, double alpha, const lq_conducto
     for (size_t i = 0; i < orders; i++) energies[i] = 0.0;
     if (orders == 0) return LQ_OK;
     if (alpha < LQ_SMOOTH_ALPHA) {
-        smooth_energies(material, &mu, 1, energies);
+        smooth_energies(alpha, material, &mu, 1, energies);
         return LQ_OK;
     }
-    const level l = {64, 32, 40};
+    const level l = levels[5];
     const size_t only = 0;
     operators o;
     readout read;

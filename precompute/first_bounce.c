@@ -48,8 +48,9 @@ void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double
     }
 }
 
-/* Nodes per panel of d, and per piece of azimuth, from coarse to fine. */
-static const int resolutions[][2] = {{6, 8}, {8, 16}, {12, 16}, {16, 24}, {24, 32}, {32, 48}, {48, 64}};
+/* Nodes per panel of d, and per piece of azimuth, from coarse to fine. Both grow from row to row, or the
+ * error of one would not show in the difference. */
+static const int resolutions[][2] = {{6, 8}, {8, 12}, {12, 16}, {16, 24}, {24, 32}, {32, 48}, {48, 64}};
 enum { RESOLUTIONS = sizeof resolutions / sizeof resolutions[0] };
 
 double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking masking, const double *mu,
@@ -69,7 +70,14 @@ double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking mas
                 *kept = now[k];
             }
         }
-        if (level > 0) estimate = change;
+        if (level > 0) estimate = fmax(2.0 * change, 0.1 * tolerance);
     }
     return estimate;
+}
+
+double lq_smooth_masking_error(double alpha, const double *mu, size_t count) {
+    double worst = 0.0;
+    for (size_t i = 0; i < count; i++)
+        if (mu[i] > 0.0) worst = fmax(worst, fmin(alpha / mu[i] * (alpha / mu[i]), 0.1));
+    return worst;
 }

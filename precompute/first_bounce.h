@@ -13,10 +13,13 @@
 #include "microfacet/facets.h"
 #include "precompute/curves.h"
 
-/* Roughness below which an interface is treated as smooth: every directional energy is within
- * LQ_SMOOTH_ERROR of its value at alpha = 0, both limits included (theory.md, "Small roughness"). */
+/* Roughness below which an interface is treated as smooth: angles, held in doubles, no longer resolve the
+ * lobe. */
 #define LQ_SMOOTH_ALPHA 1e-8
-#define LQ_SMOOTH_ERROR 1e-7
+
+/* What treating it so can cost `escaping` at F = 1: masking takes up to a tenth at mu ~ alpha, and
+ * (alpha/mu)^2 away from grazing. The largest over `count` cosines. */
+double lq_smooth_masking_error(double alpha, const double *mu, size_t count);
 
 /* Both integrals of every curve at cosine mu in [0,1], alpha in (0,1]; arrays of curves->count. */
 void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,

@@ -6,7 +6,7 @@
 
 enum {
     LQ_LANES = 8,       /* materials that are solved together */
-    LQ_NODES_MAX = 128, /* cosines of the finest level */
+    LQ_NODES_MAX = 192, /* cosines of the finest level */
     LQ_FACETS_MAX = 128 /* facets handed over at once */
 };
 
@@ -30,6 +30,7 @@ typedef struct lq_sylvester {
      * [curve * stride + j * nodes + i], i the node scattered from and j the one scattered to. */
     const double *dd, *du, *uu;
     const double *a_down, *a_up;
+    double negligible;         /* energy below which what remains after a bounce does not count */
     const lq_v8 *coefficients; /* [curve] */
     lq_v8 *down, *source, *up; /* work, stride each */
     lq_v8 *r;                  /* nodes^2: start and solution */

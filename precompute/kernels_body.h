@@ -216,10 +216,15 @@ static void survival(const lq_sylvester *s, lq_v8 *ratio) {
             const double escape = 1.0 / (s->a_down[i] + s->a_up[j]);
             const lq_v8 source = s->source[i * n + j]; /* a_down du */
             later += s->r[i * n + j] - escape * source;
-            remaining += s->down[i * n + j] + s->a_up[j] * escape * source;
+            remaining += (s->down[i * n + j] + s->a_up[j] * escape * source) / s->a_down[i];
         }
-        for (int l = 0; l < LQ_LANES; l++)
-            ratio[i][l] = remaining[l] > 0.0 ? s->a_down[i] * later[l] / remaining[l] : 0.0;
+        /* Where next to nothing remains, both sums are rounding and interpolation: the ratio of the node
+         * before, closer to grazing, is carried on. (F = 1 gives 1 all the way.) */
+        for (int l = 0; l < LQ_LANES; l++) {
+            const double before = i > 0 ? ratio[i - 1][l] : 1.0;
+            const double r = (later[l] + s->negligible * before) / (remaining[l] + s->negligible);
+            ratio[i][l] = r > 0.0 ? (r < 1.0 ? r : 1.0) : 0.0;
+        }
     }
 }
 

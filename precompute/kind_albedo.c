@@ -37,7 +37,7 @@ static lq_status albedo_slice(const lq_job *job, const void *state, size_t index
     const double alpha = job->nodes[ALPHA][index];
     if (alpha < LQ_SMOOTH_ALPHA) {
         for (size_t m = 0; m < job->size[MU]; m++) values[0][m] = 1.0;
-        *estimate = alpha > 0.0 ? LQ_SMOOTH_ERROR : 0.0;
+        *estimate = lq_smooth_masking_error(alpha, job->nodes[MU], job->size[MU]);
         return LQ_OK;
     }
     lq_curves curves;
@@ -89,7 +89,7 @@ static lq_status average_slice(const lq_job *job, const void *state, size_t inde
     (void)state;
     const double alpha = job->nodes[0][index];
     values[0][0] = 1.0;
-    *estimate = alpha > 0.0 ? LQ_SMOOTH_ERROR : 0.0;
+    *estimate = 2.0 * alpha; /* a tenth at most over cosines of a few alpha */
     if (alpha < LQ_SMOOTH_ALPHA) return LQ_OK;
     double before = 0.0;
     for (size_t level = 0; level < sizeof mu_nodes / sizeof mu_nodes[0]; level++) {
@@ -119,7 +119,7 @@ static lq_status dfg_slice(const lq_job *job, const void *state, size_t index, d
     if (!both) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
     lq_curves curves;
     lq_curves_schlick(&curves);
-    *estimate = alpha > 0.0 ? LQ_SMOOTH_ERROR : 1e-15;
+    *estimate = lq_smooth_masking_error(alpha, job->nodes[MU], count) + 1e-15;
     if (alpha >= LQ_SMOOTH_ALPHA)
         *estimate = 2.0 * lq_first_bounce_converged(job->ndf, alpha, job->masking, job->nodes[MU], count,
                                                     &curves, 0.5 * job->tolerance, both);

@@ -69,6 +69,7 @@ static lq_status single_energies(const lq_job *job, double alpha, const lq_condu
     const size_t curves = (size_t)materials->curves.count, mus = job->size[MU];
     double *first = malloc(mus * curves * sizeof *first);
     if (!first) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", mus);
+    *estimate = lq_smooth_masking_error(alpha, job->nodes[MU], mus) + 1e-15;
     if (alpha >= LQ_SMOOTH_ALPHA)
         *estimate = lq_first_bounce_converged(job->ndf, alpha, job->masking, job->nodes[MU], mus,
                                               &materials->curves, 0.25 * job->tolerance, first);

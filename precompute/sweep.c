@@ -138,6 +138,11 @@ static lq_status set_number(lq_table *table, const char *key, double value, lq_e
     return lq_table_set_fact(table, key, text, error);
 }
 
+/* Three digits, never below the value: an error must not be rounded down. */
+static lq_status set_bound(lq_table *table, const char *key, double value, lq_error *error) {
+    return set_number(table, key, value * 1.005, error);
+}
+
 static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, lq_error *error) {
     const struct {
         const char *key, *value;
@@ -158,7 +163,7 @@ static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, 
         if (!facts[i].takes || (facts[i].takes & job->kind->takes))
             status = lq_table_set_fact(table, facts[i].key, facts[i].value, error);
     if (status == LQ_OK) status = set_number(table, "tolerance", job->tolerance, error);
-    if (status == LQ_OK) status = set_number(table, "error", estimate, error);
+    if (status == LQ_OK) status = set_bound(table, "error", estimate, error);
     return status;
 }
 

@@ -164,7 +164,9 @@ static void write_rows(csv_stream *stream, int count) {
         fputs(row->text, stdout);
         eval_print_csv_result(stream->source, &row->result);
     }
-    fflush(stdout);
+    if (fflush(stdout) == 0 && !ferror(stdout)) return;
+    stream->ended = stream->failed = true;
+    lq_fail(&stream->error, LQ_IO, "cannot write to standard output: %s", strerror(errno));
 }
 
 static void write_header(const csv_stream *stream, const csv_row *row) {
@@ -186,7 +188,7 @@ int eval_csv(const eval_source *source, FILE *in) {
     stream->in = in;
     read_header(stream, &stream->rows[0]);
     if (!stream->failed) write_header(stream, &stream->rows[0]);
-    while (!stream->ended && !ferror(stdout)) {
+    while (!stream->ended) {
         int count = 0;
         while (count < BATCH && read_row(stream, &stream->rows[count])) count++;
         compute_rows(stream, count);

@@ -184,7 +184,7 @@ static lq_status sum_channel(const float *data, size_t bytes, uint32_t *sum, lq_
     uint32_t *sums = malloc(blocks * sizeof *sums);
     if (!sums) return lq_fail(error, LQ_NO_MEMORY, "no memory for a checksum");
     const Bytef *start = (const Bytef *)data;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (bytes >= LQ_EXR_PARALLEL * sizeof(float))
     for (size_t i = 0; i < blocks; i++) {
         size_t length = i + 1 < blocks ? BLOCK : bytes - i * BLOCK;
         sums[i] = (uint32_t)crc32_z(0, start + i * BLOCK, length);

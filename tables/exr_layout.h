@@ -19,6 +19,9 @@
 /* Room for LQ_EXR_FACT, a key, and the end of the string. */
 enum { LQ_EXR_FACT_SIZE = sizeof LQ_EXR_FACT + LQ_NAME_SIZE };
 
+/* Tables of fewer entries take less time on one core than it takes to wake the others where they are busy. */
+enum { LQ_EXR_PARALLEL = 1 << 16 };
+
 /* The JSON texts, allocated; NULL where memory ran out. Doubles keep every bit. */
 char *lq_exr_axes_text(const lq_table *table);
 char *lq_exr_channels_text(const lq_table *table);

@@ -293,7 +293,7 @@ static exr_result_t read_chunk(const reader *r, exr_decode_pipeline_t *decode, b
 static lq_status read_data(reader *r, lq_error *error) {
     size_t rows = (size_t)r->rows_per_chunk;
     int failed = EXR_ERR_SUCCESS;
-#pragma omp parallel
+#pragma omp parallel if (r->width * r->height >= LQ_EXR_PARALLEL)
     {
         exr_decode_pipeline_t decode = EXR_DECODE_PIPELINE_INITIALIZER;
         bool started = false;

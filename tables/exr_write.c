@@ -244,7 +244,7 @@ static void write_chunks(writer *w) {
     size_t chunks = (w->height + CHUNK_ROWS - 1) / CHUNK_ROWS;
     size_t chunk_bytes = (w->height < CHUNK_ROWS ? w->height : CHUNK_ROWS) * w->row_bytes;
     size_t group = group_size(chunk_bytes);
-#pragma omp parallel
+#pragma omp parallel if (w->width * w->height >= LQ_EXR_PARALLEL)
     {
         packer p;
         bool ready = packer_start(&p, chunk_bytes, group);

@@ -1,5 +1,5 @@
 /* output.c - atomic output: write to an unnamed file, then link and rename it into place. */
-#define _GNU_SOURCE /* O_TMPFILE */
+#define _GNU_SOURCE /* O_TMPFILE, eaccess, vasprintf */
 #include "tables/output.h"
 
 #include <errno.h>
@@ -99,7 +99,7 @@ static lq_status inspect(lq_output *output, lq_error *error) {
     if (exists ? S_ISDIR(info.st_mode) : output->path[length - 1] == '/')
         return lq_fail(error, LQ_IO, "%s: is a folder; accepted is the name of a file", output->path);
     output->direct = exists && !S_ISREG(info.st_mode);
-    if (exists && access(output->path, W_OK) != 0)
+    if (exists && eaccess(output->path, W_OK) != 0)
         return lq_fail(error, LQ_IO, "%s: %s; accepted is a file that may be replaced", output->path,
                        strerror(errno));
     output->target = exists && !output->direct ? realpath(output->path, NULL) : strdup(output->path);

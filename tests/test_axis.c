@@ -163,7 +163,8 @@ static void test_refused_names(void **state) {
 
 static void test_refused_custom(void **state) {
     (void)state;
-    const double equal[] = {0, 1, 1, 2}, falling[] = {0, 2, 1, 3}, bad[] = {0, NAN, 1}, open[] = {0, INFINITY};
+    const double equal[] = {0, 1, 1, 2}, falling[] = {0, 2, 1, 3}, bad[] = {0, NAN, 1},
+                 open[] = {0, INFINITY};
     lq_axis axis;
     lq_error error;
     assert_int_equal(lq_axis_make_custom(&axis, "x", equal, 4, &error), LQ_BAD_INPUT);

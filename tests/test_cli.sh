@@ -197,6 +197,11 @@ got=0
 "$LACQUER" list >/dev/full 2>files/err || got=$?
 [ "$got" -eq 1 ] || fail "list >/dev/full: exit $got"
 grep -q 'No space left' files/err || fail "list >/dev/full: $(cat files/err)"
+got=0
+"$LACQUER" eval albedo --format csv <files/points.csv >/dev/full 2>files/err || got=$?
+[ "$got" -eq 1 ] || fail "CSV to /dev/full: exit $got"
+[ "$(wc -l <files/err)" -eq 1 ] || fail "CSV to /dev/full: not one line: $(cat files/err)"
+grep -q 'No space left' files/err || fail "CSV to /dev/full: $(cat files/err)"
 
 # ------------------------------------------------------------------------------- stored files
 run 0 info files/one.exr

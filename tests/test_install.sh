@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs into an empty prefix and builds a small program against it, outside the tree: once through
-# pkg-config, once through find_package. First the library as it was built, then a shared one.
+# Installs into an empty prefix and builds small programs against it, outside the tree: through pkg-config (the
+# example of the README too) and through find_package. First the library as it was built, then a shared one.
 set -euo pipefail
 : "${LACQUER_BUILD:?build folder}" "${LACQUER_SOURCE:?source folder}"
 cmake=${CMAKE_COMMAND:-cmake}
@@ -28,6 +28,7 @@ int main(void) {
     return fabs(value - 0.93688) < 1e-4 ? 0 : 2; /* random walks of 2e7 samples */
 }
 END
+awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$LACQUER_SOURCE/README.md" >readme.c
 cat >CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES C)
@@ -43,6 +44,9 @@ try() { # PREFIX
     # shellcheck disable=SC2046 # flags are several words
     "$cc" user.c -o user-pc $(PKG_CONFIG_PATH=$libdir pkg-config --cflags --libs lacquer) -lm
     LD_LIBRARY_PATH=${libdir%/pkgconfig} ./user-pc
+    # shellcheck disable=SC2046
+    "$cc" readme.c -o readme $(PKG_CONFIG_PATH=$libdir pkg-config --cflags --libs lacquer)
+    LD_LIBRARY_PATH=${libdir%/pkgconfig} ./readme | grep -q '^0\.93[0-9]* ± '
     "$cmake" -S . -B "$1-user" -G Ninja -DCMAKE_PREFIX_PATH="$1" -DCMAKE_C_COMPILER="$cc" >log 2>&1 || {
         cat log
         return 1

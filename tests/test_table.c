@@ -171,7 +171,7 @@ static double next(uint64_t *seed) {
 }
 
 static void check_lookup(const char *const *forms, int count) {
-    lq_axis axes[LQ_MAX_AXES];
+    lq_axis axes[LQ_MAX_AXES] = {0};
     const char *axis_names[] = {"p", "q", "r", "s"}, *names[] = {"a"};
     lq_table *table;
     for (int i = 0; i < count; i++) make(&axes[i], forms[i], axis_names[i]);
@@ -224,12 +224,14 @@ static void test_lookup_linear_axis(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_create),       cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_create),
+        cmocka_unit_test(test_refused),
         cmocka_unit_test(test_absurd_sizes),
 #ifndef __SANITIZE_ADDRESS__
         cmocka_unit_test(test_no_memory),
 #endif
-        cmocka_unit_test(test_facts),        cmocka_unit_test(test_lookup),
+        cmocka_unit_test(test_facts),
+        cmocka_unit_test(test_lookup),
         cmocka_unit_test(test_lookup_linear_axis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,7 @@
 
 #include "tables/status.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,4 +70,16 @@ lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error
     if (!origin->kind) return LQ_FORMAT;
     const lq_status status = check_shape(table, origin->kind, error);
     return status == LQ_OK ? read_settings(table, origin->kind, &origin->settings, error) : status;
+}
+
+/* Masking is a matter of single scattering: the walk of all orders has none of its own. */
+void lq_origin_describe(const lq_kind *kind, const lq_settings *settings, char *text, size_t size) {
+    const bool multiple = (kind->takes & LQ_TAKES_SCATTERING) && settings->scattering == LQ_MULTIPLE;
+    const char *scattering = multiple                            ? ", multiple scattering"
+                             : kind->takes & LQ_TAKES_SCATTERING ? ", single scattering"
+                                                                 : "";
+    const char *masking = multiple || !(kind->takes & LQ_TAKES_MASKING) ? ""
+                          : settings->masking == LQ_SEPARABLE           ? ", separable masking"
+                                                                        : ", correlated masking";
+    snprintf(text, size, "%s, %s%s%s", kind->id, settings->ndf, scattering, masking);
 }

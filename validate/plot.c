@@ -110,21 +110,19 @@ static void put_line(FILE *out, double x, double y, const char *attributes, cons
     fputs("</text>\n", out);
 }
 
-/* A tick at `at`: 10 to a superscript power, or a plain number. */
-static void format_tick(char *text, size_t size, const scale *s, double at) {
+void lq_plot_power(char *text, int power) {
     static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    if (!s->logarithmic) {
-        snprintf(text, size, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
-        return;
-    }
-    const int power = (int)lround(at);
-    if (power >= 0 && power <= 2) {
-        snprintf(text, size, "%.0f", pow(10.0, power));
-        return;
-    }
-    const int digits = abs(power) % 100;
-    snprintf(text, size, "10%s%s%s", power < 0 ? "⁻" : "", digits >= 10 ? raised[digits / 10] : "",
-             raised[digits % 10]);
+    const int digits = abs(power) % 1000;
+    snprintf(text, 24, "10%s%s%s%s", power < 0 ? "⁻" : "", digits >= 100 ? raised[digits / 100] : "",
+             digits >= 10 ? raised[digits / 10 % 10] : "", raised[digits % 10]);
+}
+
+/* A tick at `at`: 1, 10, 100 or 10 to a superscript power on a logarithmic axis, otherwise a plain number. */
+static void format_tick(char *text, const scale *s, double at) {
+    const double power = round(at);
+    if (!s->logarithmic) snprintf(text, 24, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
+    else if (power >= 0.0 && power <= 2.0) snprintf(text, 24, "%.0f", pow(10.0, power));
+    else lq_plot_power(text, (int)power);
 }
 
 /* A rough width in px of a text of 12 px: characters, not bytes, at the mean width of a sans serif. */
@@ -150,10 +148,10 @@ static void draw_head(FILE *out, const lq_plot *plot) {
 }
 
 static void draw_grid(FILE *out, const scale *s, bool horizontal) {
-    char text[48];
+    char text[24];
     for (double at = s->low; at < s->high + 0.5 * s->step; at += s->step) {
         const double p = s->start + s->length * (at - s->low) / (s->high - s->low);
-        format_tick(text, sizeof text, s, at);
+        format_tick(text, s, at);
         if (horizontal) {
             fprintf(out, "<path class=\"grid\" d=\"M%.1f %.1fV%.1f\"/>\n", p, top, height - bottom);
             put_line(out, p, height - bottom + 19, "class=\"soft\" text-anchor=\"middle\"", text);

@@ -34,6 +34,9 @@ typedef struct lq_plot {
     const lq_plot_span *span; /* or NULL */
 } lq_plot;
 
+/* "10⁻⁵" for -5, in at most 24 bytes; for labels. */
+void lq_plot_power(char *text, int power);
+
 /* LQ_BAD_INPUT where there is nothing to draw. The file appears whole or not at all. */
 lq_status lq_plot_write(const lq_plot *plot, const char *path, lq_error *error);
 

@@ -16,7 +16,7 @@ static const cli_option options[] = {
     {SVG, "svg", "FILE", "write a log-log chart"},
     {POINTS, "points", "P", "entries at which errors are measured (default 64)"},
     {SEED, "seed", "S", "of the points and of the walks (default 1)"},
-    {FULL, "full", NULL, "also time the table over its default grid (fgd: 64 x 64 x 64 x 64)"},
+    {FULL, "full", NULL, "also the default grid (fgd: 64 x 64 x 64 x 64) and tolerance 1e-7"},
     {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)"},
     {CLI_SCATTERING, "scattering", "single|multiple", "hits on the microsurface (default multiple)"},
     {CLI_MASKING, "masking", "correlated|separable", "Smith masking (default correlated)"},

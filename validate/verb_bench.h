@@ -34,7 +34,7 @@ typedef struct bench_job {
 /* Run everything and fill the rows. */
 lq_status bench_measure(bench_job *job, const lq_progress *progress, lq_error *error);
 
-/* CPU seconds per entry at an rms error. The walk: error ~ 1/sqrt(N) through all its rows. The solver:
+/* CPU seconds per entry at an rms error. The walk: error ~ 1/sqrt(N), from all its rows. The solver:
  * log-log between its rows; an error above that of its fastest row costs what that row costs. NAN: the
  * solver did not reach it. */
 double bench_walk_cost(const bench_job *job, double error);

@@ -46,19 +46,37 @@ static lq_status make_axes(bench_job *job, lq_error *error) {
 }
 
 /* The reference is the solver itself at a tolerance below every row. */
-static lq_status refer(const bench_job *job, const lq_axis *axes, reference *to, lq_error *error) {
+static lq_status refer_point(const bench_job *job, const lq_axis *axes, reference *to, size_t i,
+                             lq_error *error) {
+    if (cli_interrupted()) return LQ_CANCELLED;
     lq_settings settings = job->options.settings;
     settings.tolerance = job->reference_tolerance;
-    const size_t channels = (size_t)job->kind->channel_count;
+    settings.threads = 1;
+    double estimate;
+    to->at[i] = lq_draw_entry(axes, job->kind->axis_count, job->seed, i);
+    const lq_status status = lq_eval(job->kind, &settings, to->at[i].at,
+                                     &to->values[i * (size_t)job->kind->channel_count], &estimate, error);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+}
+
+static lq_status refer(const bench_job *job, const lq_axis *axes, reference *to, lq_error *error) {
     to->at = calloc(job->points, sizeof *to->at);
-    to->values = calloc(job->points * channels, sizeof *to->values);
-    lq_status status = to->at && to->values ? LQ_OK : LQ_NO_MEMORY;
-    if (status != LQ_OK) snprintf(error->text, sizeof error->text, "no memory for %zu points", job->points);
-    for (size_t i = 0; status == LQ_OK && i < job->points; i++) {
-        double estimate;
-        to->at[i] = lq_draw_entry(axes, job->kind->axis_count, job->seed, i);
-        status = lq_eval(job->kind, &settings, to->at[i].at, &to->values[i * channels], &estimate, error);
-        if (status == LQ_NOT_CONVERGED) status = LQ_OK;
+    to->values = calloc(job->points * (size_t)job->kind->channel_count, sizeof *to->values);
+    if (!to->at || !to->values) {
+        snprintf(error->text, sizeof error->text, "no memory for %zu points", job->points);
+        return LQ_NO_MEMORY;
+    }
+    lq_status status = LQ_OK;
+#pragma omp parallel for schedule(dynamic) num_threads(job->threads)
+    for (size_t i = 0; i < job->points; i++) {
+        lq_error cause = {""};
+        const lq_status stop = refer_point(job, axes, to, i, &cause);
+        if (stop == LQ_OK) continue;
+#pragma omp critical(bench_refer)
+        {
+            status = stop;
+            *error = cause;
+        }
     }
     return status;
 }
@@ -120,7 +138,10 @@ static lq_status walk_point(const bench_job *job, const reference *to, size_t i,
 static lq_status run_walk(bench_job *job, const reference *to, bench_row *row, lq_error *error) {
     const size_t channels = (size_t)job->kind->channel_count, count = job->points * channels;
     double *values = calloc(count, sizeof *values);
-    if (!values) return LQ_NO_MEMORY;
+    if (!values) {
+        snprintf(error->text, sizeof error->text, "no memory for %zu points", job->points);
+        return LQ_NO_MEMORY;
+    }
     lq_status status = LQ_OK;
     const double start = cli_seconds();
 #pragma omp parallel for schedule(dynamic) num_threads(job->threads)
@@ -172,7 +193,7 @@ lq_status bench_measure(bench_job *job, const lq_progress *progress, lq_error *e
     lq_status status = make_axes(job, error);
     if (status == LQ_OK) status = refer(job, job->axes, &to, error);
     for (size_t i = 0; status == LQ_OK && i < sizeof tolerances / sizeof tolerances[0]; i++)
-        if (tolerances[i] >= job->kind->finest_tolerance)
+        if (tolerances[i] >= (job->full ? job->kind->finest_tolerance : 1e-6))
             status = run_row(job, job->axes, &to, progress, (bench_row){.setting = tolerances[i]}, error);
     for (size_t i = 0; status == LQ_OK && i < sizeof sample_counts / sizeof sample_counts[0]; i++)
         status = run_row(job, job->axes, &to, progress,
@@ -182,15 +203,17 @@ lq_status bench_measure(bench_job *job, const lq_progress *progress, lq_error *e
     return status;
 }
 
+/* The time of a sample comes from the longest row, its variance from all of them. */
 double bench_walk_cost(const bench_job *job, double error) {
-    double sum = 0.0, count = 0.0;
+    double variance = 0.0, count = 0.0, seconds = NAN;
     for (size_t i = 0; i < job->row_count; i++) {
         const bench_row *row = &job->rows[i];
-        if (!row->walk || !(row->rms > 0.0)) continue;
-        sum += log(row->cpu_per_entry * row->rms * row->rms);
+        if (!row->walk) continue;
+        variance += row->rms * row->rms * row->setting;
         count += 1.0;
+        seconds = row->cpu_per_entry / row->setting;
     }
-    return count > 0.0 ? exp(sum / count) / (error * error) : NAN;
+    return seconds * variance / count / (error * error);
 }
 
 double bench_solver_cost(const bench_job *job, double error) {

@@ -2,6 +2,7 @@
 #include "validate/verb_bench.h"
 
 #include "tables/output.h"
+#include "validate/origin.h"
 #include "validate/plot.h"
 
 #include <math.h>
@@ -27,18 +28,6 @@ static void describe_machine(const bench_job *job, char *text) {
              job->threads == 1 ? "" : "s", name);
 }
 
-static void describe_table(const bench_job *job, char *text) {
-    const lq_settings *s = &job->options.settings;
-    const lq_kind *kind = job->kind;
-    snprintf(text, LINE, "%s, %s%s%s", kind->id, s->ndf,
-             !(kind->takes & LQ_TAKES_SCATTERING) ? ""
-             : s->scattering == LQ_SINGLE         ? ", single scattering"
-                                                  : ", multiple scattering",
-             !(kind->takes & LQ_TAKES_MASKING) ? ""
-             : s->masking == LQ_SEPARABLE      ? ", separable masking"
-                                               : ", correlated masking");
-}
-
 static void describe_grid(const bench_job *job, char *text) {
     size_t used = 0;
     text[0] = '\0';
@@ -61,7 +50,7 @@ static void print_ratio(const bench_job *job, double error) {
 
 void bench_print(const bench_job *job) {
     char table[LINE], machine[LINE], grid[LINE];
-    describe_table(job, table);
+    lq_origin_describe(job->kind, &job->options.settings, table, sizeof table);
     describe_machine(job, machine);
     describe_grid(job, grid);
     printf("%s; solver over %s nodes\n", table, grid);
@@ -107,7 +96,7 @@ lq_status bench_write_csv(const bench_job *job, lq_error *error) {
 typedef struct curve {
     size_t count;
     double cost[BENCH_MAX_ROWS], rms[BENCH_MAX_ROWS], max[BENCH_MAX_ROWS];
-    char text[BENCH_MAX_ROWS][16];
+    char text[BENCH_MAX_ROWS][24];
     const char *labels[BENCH_MAX_ROWS];
 } curve;
 
@@ -120,9 +109,16 @@ static void gather(const bench_job *job, bool walk, curve *c) {
         c->cost[k] = row->cpu_per_entry;
         c->rms[k] = row->rms;
         c->max[k] = row->max;
-        snprintf(c->text[k], sizeof c->text[k], walk ? "N = %.0e" : "%.0e", row->setting);
+        lq_plot_power(c->text[k], (int)lround(log10(row->setting)));
         c->labels[k] = c->text[k];
     }
+}
+
+static void format_ratio(char *text, double ratio) {
+    char power[24];
+    const double exponent = floor(log10(ratio));
+    lq_plot_power(power, (int)exponent);
+    snprintf(text, LINE, "%.1f × %s times faster at error 10⁻⁴", ratio / pow(10.0, exponent), power);
 }
 
 lq_status bench_write_svg(const bench_job *job, lq_error *error) {
@@ -130,25 +126,26 @@ lq_status bench_write_svg(const bench_job *job, lq_error *error) {
     gather(job, false, &solver);
     gather(job, true, &walk);
     const lq_series series[] = {
-        {"solver, rms", solver.count, solver.cost, solver.rms, solver.labels, 0, false},
-        {"solver, largest", solver.count, solver.cost, solver.max, NULL, 0, true},
-        {"random walk, rms", walk.count, walk.cost, walk.rms, walk.labels, 1, false},
-        {"random walk, largest", walk.count, walk.cost, walk.max, NULL, 1, true},
+        {"solver at tolerance, rms", solver.count, solver.cost, solver.rms, solver.labels, 0, false},
+        {"largest", solver.count, solver.cost, solver.max, NULL, 0, true},
+        {"random walk of N samples, rms", walk.count, walk.cost, walk.rms, walk.labels, 1, false},
+        {"largest", walk.count, walk.cost, walk.max, NULL, 1, true},
     };
     char table[LINE], title[2 * LINE], machine[LINE], ratio[LINE];
-    describe_table(job, table);
+    lq_origin_describe(job->kind, &job->options.settings, table, sizeof table);
     describe_machine(job, machine);
     snprintf(title, sizeof title, "Speed against error: %s", table);
     lq_plot_span span = {.y = 1e-4, .label = ratio};
     span.x_from = bench_solver_cost(job, span.y);
     span.x_to = bench_walk_cost(job, span.y);
-    snprintf(ratio, sizeof ratio, "%.1g times faster at error 1e-4", span.x_to / span.x_from);
+    const bool comparable = span.x_from > 0.0 && span.x_to > 0.0;
+    if (comparable) format_ratio(ratio, span.x_to / span.x_from);
     const lq_plot plot = {.title = title,
                           .subtitle = machine,
                           .x = {"CPU seconds per entry", true},
                           .y = {"error", true},
                           .series = series,
                           .series_count = 4,
-                          .span = isfinite(span.x_from) ? &span : NULL};
+                          .span = comparable ? &span : NULL};
     return lq_plot_write(&plot, job->svg, error);
 }

@@ -12,14 +12,9 @@
  * ====================================================================================== */
 
 static void print_head(const validate_job *job) {
-    const lq_kind *kind = job->origin.kind;
-    const lq_settings *s = &job->origin.settings;
-    printf("%s: %s, %s", cli_basename(job->request.file), kind->id, s->ndf);
-    if (kind->takes & LQ_TAKES_SCATTERING)
-        printf(", %s scattering", s->scattering == LQ_SINGLE ? "single" : "multiple");
-    if (kind->takes & LQ_TAKES_MASKING)
-        printf(", %s masking", s->masking == LQ_SEPARABLE ? "separable" : "correlated");
-    printf(", tolerance %g\n", s->tolerance);
+    char what[128];
+    lq_origin_describe(job->origin.kind, &job->origin.settings, what, sizeof what);
+    printf("%s: %s, tolerance %g\n", cli_basename(job->request.file), what, job->origin.settings.tolerance);
     for (int i = 0; i < job->table->axis_count; i++)
         printf("%s%s %zu", i ? " x " : "", job->table->axes[i].name, job->table->axes[i].size);
     printf(" nodes; %zu stored entries and %zu points between them, seed %zu", job->stored, job->between,

@@ -1,0 +1,110 @@
+/* test_tables_memory.c - every allocation of a table's life fails once: an error each time, no crash. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "lacquer.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CAN_FAIL 1 /* elsewhere the allocator cannot be replaced this way */
+#else
+#define CAN_FAIL 0
+#endif
+
+/* Allocations left before one fails; negative: none will. Tables this small use one thread. */
+static volatile long countdown = -1; /* volatile: the compiler believes that malloc does not read it */
+
+#if CAN_FAIL
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *block, size_t size);
+
+static bool fails_now(void) {
+    return countdown >= 0 && countdown-- == 0;
+}
+
+void *malloc(size_t size) {
+    return fails_now() ? NULL : __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size) {
+    return fails_now() ? NULL : __libc_calloc(count, size);
+}
+
+void *realloc(void *block, size_t size) {
+    return fails_now() ? NULL : __libc_realloc(block, size);
+}
+#endif
+
+/* Valgrind, which comes in by LD_PRELOAD, puts its own allocator before ours in part of the libraries. */
+static bool can_fail(void) {
+    const char *preload = getenv("LD_PRELOAD");
+    return CAN_FAIL && !(preload && strstr(preload, "vgpreload"));
+}
+
+static lq_status make_table(lq_table **table, lq_error *error) {
+    lq_axis axes[2];
+    const char *channels[] = {"b", "a"};
+    *table = NULL;
+    lq_status status = lq_axis_parse(&axes[0], "mu", "0:1:4:sqrt", error);
+    if (status) return status;
+    status = lq_axis_parse(&axes[1], "alpha", "0,0.5,1", error);
+    if (!status) status = lq_table_create(table, axes, 2, channels, 2, error);
+    if (!status) status = lq_table_set_fact(*table, "ndf", "ggx", error);
+    if (!status) status = lq_table_set_fact(*table, "ndf", "beckmann", error);
+    lq_axis_free(&axes[0]);
+    lq_axis_free(&axes[1]);
+    return status;
+}
+
+static lq_status live(const char *path, lq_error *error) {
+    lq_table *table, *back = NULL;
+    lq_status status = make_table(&table, error);
+    if (!status) status = lq_table_write_npy(table, path, error);
+    if (!status) status = lq_table_write_exr(table, path, error);
+    if (!status) status = lq_table_read_exr(&back, path, error);
+    if (!status) assert_memory_equal(table->channels[1], back->channels[1], 12 * sizeof(float));
+    lq_table_free(table);
+    lq_table_free(back);
+    return status;
+}
+
+static void test_every_allocation_fails(void **state) {
+    (void)state;
+    char path[] = "/tmp/lacquer-test-memory-XXXXXX";
+    lq_error error;
+    int file, failures = 0;
+    if (!can_fail()) skip();
+    file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+    assert_int_equal(live(path, &error),
+                     LQ_OK); /* the OpenMP runtime, which exits without memory, is ready */
+    for (long n = 0;; n++) {
+        strcpy(error.text, "");
+        countdown = n;
+        lq_status status = live(path, &error);
+        bool reached = countdown < 0;
+        countdown = -1;
+        if (!reached) break;
+        if (status == LQ_OK) continue; /* one that a library can do without */
+        failures++;
+        if (!*error.text) fail_msg("allocation %ld: status %d without a message", n, (int)status);
+    }
+    unlink(path);
+    assert_true(failures > 50);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_allocation_fails)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# `lacquer validate` and `lacquer bench`: a good table passes, a damaged one does not, mistakes are one line.
+set -euo pipefail
+: "${LACQUER:?path of the program}"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+
+fail() {
+    echo "FAIL: $*" >&2
+    failures=$((failures + 1))
+}
+
+# run CODE ARGUMENTS...: out, err hold what it printed.
+run() {
+    local code=$1 got=0
+    shift
+    "$LACQUER" "$@" >out 2>err || got=$?
+    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat out err)"
+}
+
+# refused PATTERN ARGUMENTS...: exit 1, one line on stderr that matches, nothing on stdout.
+refused() {
+    local pattern=$1
+    shift
+    run 1 "$@"
+    [ "$(wc -l <err)" -eq 1 ] || fail "lacquer $*: not one line: $(cat err)"
+    grep -qE -e "$pattern" err || fail "lacquer $*: '$(cat err)' does not match '$pattern'"
+    [ ! -s out ] || fail "lacquer $*: printed on stdout"
+}
+
+says() {
+    grep -qE -e "$1" out || fail "no '$1' in: $(cat out)"
+}
+
+# ------------------------------------------------------------------------- tables that are in order
+axes=(--axis mu=0:1:9 --axis alpha=0:1:6 --axis n=0.2:2:3 --axis kappa=1:4:3)
+run 0 precompute fgd "${axes[@]}" -o fgd.exr
+run 0 validate fgd.exr --against walk --points 40 --samples 20000 --seed 3
+says 'seed 3, walks of 20000 samples'
+says '^stored - walk +[0-9]'
+says '^passed$'
+[ ! -s err ] || fail "validate wrote to stderr: $(cat err)"
+
+# the report does not depend on the threads
+mv out first
+run 0 validate fgd.exr --against walk --points 40 --samples 20000 --seed 3 --threads 1
+cmp -s first out || fail "one thread changes the report"
+run 0 validate fgd.exr --points 20
+grep -q walk out && fail "walks without --against walk"
+
+run 0 precompute fgd "${axes[@]}" --scattering single --masking separable -o single.exr
+run 0 validate single.exr --against walk --points 20 --samples 20000
+says 'single scattering, separable masking'
+for kind in albedo albedo-average dfg; do
+    run 0 precompute $kind --axis alpha=0:1:12 -o $kind.exr
+    run 0 validate $kind.exr --against walk --points 24 --samples 20000 --format json
+    says '"passed": true'
+    says '"z_limit"'
+done
+
+# --------------------------------------------------------------------------------- tables that are not
+# the linear interpolation of a coarse table is far above any budget
+run 2 validate fgd.exr --points 20 --budget 1e-6
+says 'FAILED: the error exceeds the budget'
+
+# --------------------------------------------------------------------------------------- bad input
+refused 'FILE is missing' validate
+refused 'missing.exr' validate missing.exr
+echo 'not an EXR' >foreign.exr
+refused 'foreign.exr' validate foreign.exr
+head -c 400 fgd.exr >short.exr
+refused 'short.exr' validate short.exr
+refused 'one FILE' validate fgd.exr single.exr
+refused -- '--points.*0' validate fgd.exr --points 0
+refused -- '--samples.*many' validate fgd.exr --against walk --samples many
+refused -- '--samples needs --against walk' validate fgd.exr --samples 1000
+refused 'exact.*walk' validate fgd.exr --against dice
+refused -- '--budget.*-1' validate fgd.exr --budget -1
+refused 'nonsense' validate fgd.exr --nonsense
+
+# ------------------------------------------------------------------------------------------- bench
+run 0 bench albedo-average --points 4 --csv bench.csv --svg bench.svg --seed 5
+says 'seed 5'
+says '^rms error 1e-04: solver .* times faster$'
+[ "$(head -n 1 bench.csv)" = \
+    table,method,setting,entries,threads,wall_seconds,cpu_seconds_per_entry,rms_error,max_error ] ||
+    fail "bench.csv: $(head -n 1 bench.csv)"
+[ "$(grep -c ',walk,' bench.csv)" -eq 4 ] || fail "bench.csv has not 4 walks"
+grep -q '</svg>' bench.svg || fail "bench.svg is not whole"
+refused 'unknown table' bench nonsense
+refused 'one TABLE' bench albedo fgd
+refused 'nowhere' bench albedo --csv nowhere/bench.csv
+refused -- '--scattering' bench albedo --scattering single
+
+exit "$failures"
