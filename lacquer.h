@@ -32,7 +32,7 @@ typedef enum lq_status {
     LQ_NOT_CONVERGED  /* the tolerance was not reached; value and error are still valid */
 } lq_status;
 
-enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 4, LQ_MAX_CHANNELS = 8 };
+enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 6, LQ_MAX_CHANNELS = 8 };
 
 typedef struct lq_error {
     char text[LQ_MESSAGE_SIZE]; /* one line, no newline, no trailing stop */

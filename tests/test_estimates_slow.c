@@ -36,7 +36,7 @@ static outcome check(const double *point, double tolerance) {
     const lq_kind *kind = lq_kind_find("fgd", &error);
     settings.tolerance = tolerance;
     lq_eval(kind, &settings, point, &o.value, &o.estimate, &error);
-    settings.tolerance = 0.05 * tolerance;
+    settings.tolerance = 0.025 * tolerance;
     lq_eval(kind, &settings, point, &o.exact, &o.exact_estimate, &error);
     return o;
 }
