@@ -11,6 +11,7 @@ static const double pi = 3.14159265358979323846;
 typedef struct view {
     const lq_ndf *ndf;
     double alpha;
+    double eta;               /* of the refraction; 0: reflection */
     double v_z, sin_v, theta; /* the direction and its angle to the z axis, in [0, pi] */
     const lq_gauss *inner;
     const lq_microfacet_kernels *kernels;
@@ -22,12 +23,23 @@ typedef struct piece {
     bool singular_from, singular_to;
 } piece;
 
+/* The angle d at which refraction turns light by |d - t| = |pi/2 - theta|, that is, along the horizon from an
+ * extreme facet: from sin(d - turn) = sin d / eta. Negative where there is none. */
+static double refracted_horizon(const view *w) {
+    const double side = w->sin_v - 1.0 / w->eta, along = w->eta > 1.0 ? side : -side;
+    return along > 0.0 ? atan2(fabs(w->v_z), along) : -1.0;
+}
+
 /* Where the azimuth range of a fan opens or closes: d at which the extreme facets (psi = 0 or pi) are
- * upright (m_z = 0) or reflect along the horizon. The integrand has a square root there. */
-static void add_horizon_crossings(lq_panels *panels, double theta) {
-    lq_panels_add(panels, 0.5 * pi - theta, true);         /* m_z = 0 at psi = pi */
-    lq_panels_add(panels, 0.5 * (0.5 * pi - theta), true); /* mirror = 0 at psi = pi */
-    lq_panels_add(panels, 0.5 * (0.5 * pi + theta), true); /* mirror = 0 at psi = 0 */
+ * upright (m_z = 0) or send light along the horizon. The integrand has a square root there. */
+static void add_horizon_crossings(lq_panels *panels, const view *w) {
+    lq_panels_add(panels, 0.5 * pi - w->theta, true); /* m_z = 0 at psi = pi */
+    if (w->eta > 0.0) {
+        lq_panels_add(panels, refracted_horizon(w), true);
+        return;
+    }
+    lq_panels_add(panels, 0.5 * (0.5 * pi - w->theta), true); /* psi = pi */
+    lq_panels_add(panels, 0.5 * (0.5 * pi + w->theta), true); /* psi = 0 */
 }
 
 /* Masking changes over reflected cosines of the size of the incident one: at grazing incidence that is a
@@ -42,16 +54,21 @@ static void add_extra(lq_panels *panels, const lq_panels *extra, bool singular) 
         if (extra->singular[i] == singular) lq_panels_add(panels, extra->at[i], singular);
 }
 
-static void make_panels(const view *w, const lq_panels *extra, lq_panels *panels) {
-    const double from = fmax(w->theta - 0.5 * pi, 0.0);
-    lq_panels_start(panels, from, 0.5 * pi);
-    if (from > 0.0) panels->singular[0] = true; /* the range of azimuth opens like a square root */
-    add_horizon_crossings(panels, w->theta);
+/* False where no facet sends light on. */
+static bool make_panels(const view *w, const lq_panels *extra, lq_panels *panels) {
+    const bool critical = w->eta > 0.0 && w->eta < 1.0;
+    const double from = fmax(w->theta - 0.5 * pi, 0.0), to = critical ? asin(w->eta) : 0.5 * pi;
+    if (from >= to) return false;
+    lq_panels_start(panels, from, to);
+    panels->singular[0] = from > 0.0; /* the range of azimuth opens like a square root */
+    panels->singular[1] = critical;   /* so does the angle of refraction */
+    add_horizon_crossings(panels, w);
     add_extra(panels, extra, true);
     lq_panels_grade(panels, w->theta, w->alpha, 4.0);
     grade_grazing(panels, w->theta);
     add_extra(panels, extra, false);
     lq_panels_separate(panels);
+    return true;
 }
 
 /* chi/2 of the azimuth with cos psi = `cos_psi`, clamped to [0, pi/2]. */
@@ -61,11 +78,13 @@ static double half_chi(double cos_psi, double lambda) {
     return atan2(sqrt(1.0 - cos_psi), lambda * sqrt(1.0 + cos_psi));
 }
 
-/* cos psi where cos b v_z + sin b sin_v cos psi = 0; the sign of infinity says which side all psi are. */
+/* cos psi where cos b v_z + sin b sin_v cos psi = 0. Past +-1 there is none: then it tells, as 2 or -2,
+ * whether the near side of the split (psi = 0) is empty or everything, the near side being the upper one for
+ * sin b >= 0. */
 static double crossing(double cos_b, double sin_b, const view *w) {
     const double level = -cos_b * w->v_z, reach = sin_b * w->sin_v;
-    if (reach > 0.0) return level / reach;
-    return level < 0.0 ? -2.0 : 2.0;
+    if (reach != 0.0) return level / reach;
+    return (level < 0.0) == (sin_b >= 0.0) ? -2.0 : 2.0;
 }
 
 /* Cubic map towards a singular end: the reflected cosine vanishes there, linearly, and what is integrated
@@ -91,12 +110,29 @@ static int piece_nodes(const piece *p, const lq_gauss *rule, double *h, double *
     return rule->count;
 }
 
+/* Cosine and sine of the angle between v and the image direction: 2d, or d - t. Refracted light goes to
+ * -(cos(d - t) v + sin(d - t) e), which in the other medium, its z axis turned over, is the mirror's form
+ * again. sin(d - t) comes from eta cos t - cos d = (eta^2 - 1) / (eta cos t + cos d), which does not cancel
+ * at eta -> 1. */
+static void image_angle(const view *w, const lq_fan *fan, double *cosine, double *sine) {
+    const double c = fan->cos_d, s = fan->sin_d;
+    if (w->eta == 0.0) {
+        *cosine = (c - s) * (c + s);
+        *sine = 2.0 * s * c;
+        return;
+    }
+    const double gap = (w->eta - 1.0) * (w->eta + 1.0);
+    const double eta_cos_t = sqrt(fmax(gap + c * c, 0.0));
+    *cosine = (c * eta_cos_t + s * s) / w->eta;
+    *sine = s * gap / (w->eta * (eta_cos_t + c));
+}
+
 static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     fan->d = d;
     fan->cos_d = cos(d);
     fan->sin_d = sin(d);
-    const double cos_2d = (fan->cos_d - fan->sin_d) * (fan->cos_d + fan->sin_d);
-    const double sin_2d = 2.0 * fan->sin_d * fan->cos_d;
+    double cos_image, sin_image;
+    image_angle(w, fan, &cos_image, &sin_image);
 
     /* GGX has 1/(1 - k^2 m_z^2)^2, k^2 = 1 - alpha^2; lambda flattens the nearer pole, m_z = 1/k. */
     const double a2 = w->alpha * w->alpha, k = sqrt(fmax(1.0 - a2, 0.0)), gap = a2 / (1.0 + k);
@@ -106,18 +142,22 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     c.lambda = sqrt(c.lambda2);
     c.tilt0 = 2.0 * near * near;
     c.tilt1 = 2.0 * fan->sin_d * w->sin_v;
-    c.mirror0 = cos_2d * w->v_z;
-    c.mirror1 = sin_2d;
+    c.mirror0 = cos_image * w->v_z;
+    c.mirror1 = sin_image;
     c.sin_v = w->sin_v;
 
-    const double horizon = half_chi(crossing(cos_2d, sin_2d, w), c.lambda);
+    /* The image rises above the horizon on the near side of the split, or on the far side if it turns the
+     * other way (light that enters a rarer medium). */
+    const bool near_up = sin_image >= 0.0;
+    const double horizon = half_chi(crossing(cos_image, sin_image, w), c.lambda);
     const double upright = half_chi(crossing(fan->cos_d, fan->sin_d, w), c.lambda);
-    const piece above = {0.0, fmin(horizon, upright), false, horizon <= upright};
-    const piece below = {horizon, upright, true, false};
+    const piece nearer = {0.0, fmin(horizon, upright), false, horizon <= upright};
+    const piece farther = {horizon, upright, true, false};
+    const piece *above = near_up ? &nearer : &farther, *below = near_up ? &farther : &nearer;
 
     double h[LQ_FAN_MAX], cos2[LQ_FAN_MAX], sin2[LQ_FAN_MAX], density[LQ_FAN_MAX];
-    fan->up = piece_nodes(&above, w->inner, h, fan->weight);
-    fan->count = fan->up + piece_nodes(&below, w->inner, h + fan->up, fan->weight + fan->up);
+    fan->up = piece_nodes(above, w->inner, h, fan->weight);
+    fan->count = fan->up + piece_nodes(below, w->inner, h + fan->up, fan->weight + fan->up);
     w->kernels->place_facets(&c, (size_t)fan->count, h, fan->weight, fan->mirror, fan->e_z, cos2, sin2);
     w->ndf->density(w->ndf, w->alpha, (size_t)fan->count, cos2, sin2, density);
     /* Twice: both signs of the azimuth. */
@@ -125,17 +165,29 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     for (int i = 0; i < fan->count; i++) fan->weight[i] *= scale * density[i];
 }
 
-void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, const lq_facet_rule *rule,
-                     const lq_panels *extra, lq_fan_visitor *visit, void *user) {
-    const view w = {ndf, alpha, v_z, sin_v, atan2(sin_v, v_z), &rule->inner, lq_microfacet_kernels_get()};
+static void visit_all(const view *w, const lq_gauss *outer, const lq_panels *extra, lq_fan_visitor *visit,
+                      void *user) {
     lq_panels panels;
-    make_panels(&w, extra, &panels);
+    if (!make_panels(w, extra, &panels)) return;
     lq_fan fan;
     for (int p = 0; p + 1 < panels.count; p++)
-        for (int i = 0; i < rule->outer.count; i++) {
+        for (int i = 0; i < outer->count; i++) {
             double slope;
-            const double d = lq_panels_map(&panels, p, rule->outer.node[i], &slope);
-            fan_make(&w, d, rule->outer.weight[i] * slope, &fan);
+            const double d = lq_panels_map(&panels, p, outer->node[i], &slope);
+            fan_make(w, d, outer->weight[i] * slope, &fan);
             visit(user, &fan);
         }
+}
+
+void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, const lq_facet_rule *rule,
+                     const lq_panels *extra, lq_fan_visitor *visit, void *user) {
+    lq_facets_visit_refracted(ndf, alpha, 0.0, v_z, sin_v, rule, extra, visit, user);
+}
+
+void lq_facets_visit_refracted(const lq_ndf *ndf, double alpha, double eta, double v_z, double sin_v,
+                               const lq_facet_rule *rule, const lq_panels *extra, lq_fan_visitor *visit,
+                               void *user) {
+    const view w = {
+        ndf, alpha, eta, v_z, sin_v, atan2(sin_v, v_z), &rule->inner, lq_microfacet_kernels_get()};
+    visit_all(&w, &rule->outer, extra, visit, user);
 }

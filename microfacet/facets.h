@@ -26,10 +26,10 @@ enum { LQ_FAN_MAX = 128 };
 /* The facets at one angle d from v, above and below the split of the azimuth. */
 typedef struct lq_fan {
     double d, cos_d, sin_d;
-    int up;    /* facets [0, up) reflect above the horizon, ... */
-    int count; /* ... facets [up, count) below it */
-    /* Of each facet: |cosine| of the reflected direction, the horizontal part v.z-free component of e(psi)
-     * (e_z = sin theta cos psi), and its weight (v.m) D(m) dm, not normalised. */
+    int up;    /* facets [0, up) send light away from the surface, ... */
+    int count; /* ... facets [up, count) back towards it */
+    /* Of each facet: |cosine| of the direction it sends light to, z component of e(psi), and its weight
+     * (v.m) D(m) dm, not normalised. The cosines of each of the two parts run monotonically. */
     _Alignas(64) double mirror[LQ_FAN_MAX];
     _Alignas(64) double e_z[LQ_FAN_MAX];
     _Alignas(64) double weight[LQ_FAN_MAX];
@@ -47,5 +47,12 @@ typedef struct lq_facet_rule {
  * curves. The sum of all weights is sigma(v) to the accuracy of the rule. */
 void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, const lq_facet_rule *rule,
                      const lq_panels *extra, lq_fan_visitor *visit, void *user);
+
+/* The same for light that the facets refract into a medium of index eta (relative, not 1): fans past the
+ * critical angle are left out, and "away from the surface" is meant in the other medium, whose cosines
+ * `mirror` holds. */
+void lq_facets_visit_refracted(const lq_ndf *ndf, double alpha, double eta, double v_z, double sin_v,
+                               const lq_facet_rule *rule, const lq_panels *extra, lq_fan_visitor *visit,
+                               void *user);
 
 #endif

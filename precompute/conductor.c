@@ -4,13 +4,12 @@
 #include "microfacet/fresnel.h"
 #include "precompute/first_bounce.h"
 #include "precompute/kernels.h"
+#include "precompute/nodes.h"
 #include "tables/status.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* ---------------------------------------------------------------------------- resolutions */
 
@@ -25,95 +24,27 @@ static const level levels[] = {{12, 8, 16},  {16, 10, 16}, {24, 12, 24},  {32, 1
                                {64, 32, 40}, {96, 40, 56}, {128, 48, 64}, {192, 56, 64}};
 enum { LEVELS = sizeof levels / sizeof levels[0] };
 
-/* ---------------------------------------------------------------------------------- nodes */
-
-/* Interpolation nodes are Chebyshev points of x, which is logarithmic in the cosine down to alpha and linear
- * below: energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take the tangent
- * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
- */
-static lq_cosine_map map_down(double alpha) {
-    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(1.0 / alpha), -1.0, 0};
-}
-
-static lq_cosine_map map_up(double alpha) {
-    return (lq_cosine_map){1.0 / alpha, 2.0 / asinh(2.0 / alpha), -1.0, 1};
-}
-
-static double map_forward(const lq_cosine_map *map, double mu) {
-    const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
-    return map->scale * asinh(t * map->inverse_alpha) + map->shift;
-}
-
-static double map_inverse(const lq_cosine_map *map, double x) {
-    const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
-    return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
-}
-
-/* The node axis of one sense of direction: one element [0,1] of cosines, or two where the energy changes
- * abruptly at a known cosine. Each element has its own Chebyshev points. */
-enum { ELEMENTS_MAX = 2 };
-
-typedef struct node_axis {
-    int elements;
-    double bound[ELEMENTS_MAX + 1]; /* cosines */
-    lq_cosine_map map[ELEMENTS_MAX];
-} node_axis;
+/* ------------------------------------------------------------------------------ operators */
 
 /* Cosines at which the two node axes are divided, or 0. */
 typedef struct split {
     double down, up;
 } split;
 
-static node_axis axis_make(lq_cosine_map whole, double at) {
-    node_axis axis = {.elements = at > 0.0 && at < 1.0 ? 2 : 1};
-    axis.bound[1] = at;
-    axis.bound[axis.elements] = 1.0;
-    for (int e = 0; e < axis.elements; e++) {
-        const double from = map_forward(&whole, axis.bound[e]), to = map_forward(&whole, axis.bound[e + 1]);
-        const double half = 0.5 * (to - from), middle = 0.5 * (from + to);
-        axis.map[e] = whole;
-        axis.map[e].scale /= half;
-        axis.map[e].shift = (whole.shift - middle) / half;
-    }
-    return axis;
-}
-
-static double chebyshev_angle(int nodes, int i) {
-    return pi * (nodes - 1 - i + 0.5) / nodes;
-}
-
-/* basis[m * nodes + i]: node values to Chebyshev coefficients. */
-static void chebyshev_basis(int nodes, double *basis) {
-    for (int m = 0; m < nodes; m++)
-        for (int i = 0; i < nodes; i++)
-            basis[m * nodes + i] = (m ? 2.0 : 1.0) / nodes * cos(m * chebyshev_angle(nodes, i));
-}
-
-/* ------------------------------------------------------------------------------ operators */
-
 typedef struct operators {
     int nodes, curves;
-    int element; /* nodes of one element */
-    node_axis down, up;
     size_t stride;
-    double mu_down[LQ_NODES_MAX], mu_up[LQ_NODES_MAX];
+    lq_node_axis down, up;
     double a_down[LQ_NODES_MAX], a_up[LQ_NODES_MAX];
     double *dd, *du, *uu; /* as in lq_sylvester */
-    double *basis;        /* of one element */
 } operators;
 
 static void operators_free(operators *o) {
     free(o->dd);
     free(o->du);
     free(o->uu);
-    free(o->basis);
-}
-
-static double *zeros(size_t count) {
-    double *p = NULL;
-    if (posix_memalign((void **)&p, 64, count * sizeof(double))) return NULL;
-    memset(p, 0, count * sizeof(double));
-    return p;
+    lq_node_axis_free(&o->down);
+    lq_node_axis_free(&o->up);
 }
 
 /* Scatter moments of one direction: for every curve the Chebyshev moments of where its facets send light. */
@@ -125,27 +56,12 @@ typedef struct scatter {
     double *to_down, *to_up; /* [curve * nodes + moment] */
 } scatter;
 
-/* Moments of facets whose cosines run monotonically: those of one element are neighbours. */
-static void axis_moments(const scatter *s, const node_axis *axis, size_t count, const double *cosine,
-                         const double *weight, double *moment) {
-    memset(moment, 0, (size_t)s->o->nodes * sizeof *moment);
-    for (size_t from = 0; from < count;) {
-        const int e = axis->elements == 2 && cosine[from] > axis->bound[1];
-        size_t to = from + 1;
-        while (to < count && (axis->elements == 1 || (cosine[to] > axis->bound[1]) == e)) to++;
-        s->kernels->moments(&axis->map[e], to - from, cosine + from, weight + from, s->o->element,
-                            moment + e * s->o->element);
-        from = to;
-    }
-}
-
-static void scatter_part(scatter *s, const node_axis *axis, size_t count, const double *cosine,
+static void scatter_part(scatter *s, const lq_node_axis *axis, size_t count, const double *cosine,
                          const double *weight, const double *curve, double *sums) {
-    double moment[LQ_NODES_MAX];
+    double moment[LQ_NODES_MAX] = {0.0};
     if (!count) return;
-    axis_moments(s, axis, count, cosine, weight, moment);
+    s->total += lq_node_axis_moments(axis, s->kernels, count, cosine, weight, moment);
     s->kernels->spread(s->curves->count, curve, s->o->nodes, moment, sums);
-    for (int e = 0; e < axis->elements; e++) s->total += moment[e * s->o->element];
 }
 
 static void scatter_fan(void *user, const lq_fan *fan) {
@@ -158,21 +74,16 @@ static void scatter_fan(void *user, const lq_fan *fan) {
                  s->to_down);
 }
 
-/* Row i of an operator from its moments: P_ij = sum_m moment_m basis_mj / total. Element (i, j) of curve k
- * goes to out[k * stride + i * row + j * column]. */
-static void write_row(const operators *o, const double *moments, double total, int i, int row, int column,
-                      double *out) {
-    const int n = o->element;
+/* Row i of an operator from its moments. Element (i, j) of curve k goes to out[k * stride + i * row + j *
+ * column]. */
+static void write_row(const operators *o, const lq_node_axis *axis, const double *moments, double total,
+                      int i, int row, int column, double *out) {
     double values[LQ_NODES_MAX];
-    for (int k = 0; k < o->curves; k++)
-        for (int first = 0; first < o->nodes; first += n) {
-            const double *moment = moments + k * o->nodes + first;
-            memset(values, 0, sizeof values);
-            for (int m = 0; m < n; m++)
-                for (int j = 0; j < n; j++) values[j] += moment[m] * o->basis[m * n + j];
-            for (int j = 0; j < n; j++)
-                out[(size_t)k * o->stride + (size_t)(i * row + (first + j) * column)] = values[j] / total;
-        }
+    for (int k = 0; k < o->curves; k++) {
+        lq_node_axis_project(axis, moments + k * o->nodes, values);
+        for (int j = 0; j < o->nodes; j++)
+            out[(size_t)k * o->stride + (size_t)(i * row + j * column)] = values[j] / total;
+    }
 }
 
 static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const lq_facet_rule *rule,
@@ -184,46 +95,41 @@ static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const
     lq_facets_visit(ndf, alpha, v_z, lq_sine(fabs(v_z)), rule, &s->curves->panels, scatter_fan, s);
 }
 
-static void place_nodes(operators *o, const lq_ndf *ndf, double alpha) {
-    for (int i = 0; i < o->nodes; i++) {
-        const double x = cos(chebyshev_angle(o->element, i % o->element));
-        o->mu_down[i] = map_inverse(&o->down.map[i / o->element], x);
-        o->mu_up[i] = map_inverse(&o->up.map[i / o->element], x);
-        o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->mu_down[i]);
-        o->a_up[i] = lq_lambda(ndf, alpha, o->mu_up[i]);
+static bool operators_allocate(operators *o, double alpha, const lq_curves *curves, const level *l,
+                               split at) {
+    const size_t n = (size_t)l->nodes, k = (size_t)curves->count;
+    *o = (operators){.nodes = l->nodes, .curves = curves->count, .stride = (n * n + 7) / 8 * 8};
+    o->dd = lq_zeros(k * o->stride);
+    o->du = lq_zeros(k * o->stride);
+    o->uu = lq_zeros(k * o->stride);
+    const bool axes = lq_node_axis_make(&o->down, alpha, LQ_FALLING, l->nodes, at.down) &&
+                      lq_node_axis_make(&o->up, alpha, LQ_RISING, l->nodes, at.up);
+    return axes && o->dd && o->du && o->uu;
+}
+
+static void operators_fill(operators *o, const lq_ndf *ndf, double alpha, const level *l, scatter *s) {
+    lq_facet_rule rule;
+    lq_gauss_make(&rule.outer, l->outer);
+    lq_gauss_make(&rule.inner, l->inner);
+    for (int i = 0; i < l->nodes; i++) {
+        o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->down.mu[i]);
+        o->a_up[i] = lq_lambda(ndf, alpha, o->up.mu[i]);
+        scatter_direction(ndf, alpha, o->down.mu[i], &rule, s);
+        write_row(o, &o->down, s->to_down, s->total, i, l->nodes, 1, o->dd);
+        write_row(o, &o->up, s->to_up, s->total, i, l->nodes, 1, o->du);
+        scatter_direction(ndf, alpha, -o->up.mu[i], &rule, s);
+        write_row(o, &o->up, s->to_up, s->total, i, 1, l->nodes, o->uu);
     }
 }
 
-/* `split`: the cosines at which the node axes are divided, or 0. */
 static bool operators_make(operators *o, const lq_ndf *ndf, double alpha, const lq_curves *curves,
                            const level *l, split at) {
-    const size_t n = (size_t)l->nodes, k = (size_t)curves->count;
-    *o = (operators){.nodes = l->nodes, .curves = curves->count, .stride = (n * n + 7) / 8 * 8};
-    o->dd = zeros(k * o->stride);
-    o->du = zeros(k * o->stride);
-    o->uu = zeros(k * o->stride);
-    o->basis = zeros(n * n);
-    o->down = axis_make(map_down(alpha), at.down);
-    o->up = axis_make(map_up(alpha), at.up);
-    o->element = l->nodes / o->down.elements;
+    const size_t row = (size_t)curves->count * (size_t)l->nodes;
     scatter s = {.curves = curves, .kernels = lq_solver_kernels_get(), .o = o};
-    s.to_down = zeros(k * n);
-    s.to_up = zeros(k * n);
-    const bool ok = o->dd && o->du && o->uu && o->basis && s.to_down && s.to_up;
-    if (ok) {
-        lq_facet_rule rule;
-        lq_gauss_make(&rule.outer, l->outer);
-        lq_gauss_make(&rule.inner, l->inner);
-        chebyshev_basis(o->element, o->basis);
-        place_nodes(o, ndf, alpha);
-        for (int i = 0; i < l->nodes; i++) {
-            scatter_direction(ndf, alpha, o->mu_down[i], &rule, &s);
-            write_row(o, s.to_down, s.total, i, l->nodes, 1, o->dd);
-            write_row(o, s.to_up, s.total, i, l->nodes, 1, o->du);
-            scatter_direction(ndf, alpha, -o->mu_up[i], &rule, &s);
-            write_row(o, s.to_up, s.total, i, 1, l->nodes, o->uu);
-        }
-    }
+    s.to_down = lq_zeros(row);
+    s.to_up = lq_zeros(row);
+    const bool ok = operators_allocate(o, alpha, curves, l, at) && s.to_down && s.to_up;
+    if (ok) operators_fill(o, ndf, alpha, l, &s);
     free(s.to_down);
     free(s.to_up);
     if (!ok) operators_free(o);
@@ -243,21 +149,10 @@ static void readout_free(readout *r) {
     free(r->weights);
 }
 
-/* Interpolation weights from the nodes to cosine mu: sum_m T_m(x) basis_mi inside the element it lies in. */
-static void interpolation_weights(const operators *o, double mu, double *weights) {
-    const int e = o->down.elements == 2 && mu > o->down.bound[1], n = o->element;
-    const double angle = acos(fmax(fmin(map_forward(&o->down.map[e], mu), 1.0), -1.0));
-    for (int i = 0; i < n; i++) {
-        double sum = 0.0;
-        for (int m = 0; m < n; m++) sum += cos(m * angle) * o->basis[m * n + i];
-        weights[e * n + i] = sum;
-    }
-}
-
 static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, double alpha,
                          const lq_curves *curves, const level *l, const double *mu, size_t count) {
     const size_t k = (size_t)curves->count, n = (size_t)l->nodes;
-    *r = (readout){{0}, zeros(count * k), zeros(count * k), zeros(count * n)};
+    *r = (readout){{0}, lq_zeros(count * k), lq_zeros(count * k), lq_zeros(count * n)};
     if (!r->escaping || !r->remaining || !r->weights) {
         readout_free(r);
         return false;
@@ -268,7 +163,7 @@ static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, doub
     for (size_t m = 0; m < count; m++) {
         lq_first_bounce(ndf, alpha, LQ_CORRELATED, mu[m], curves, &rule, r->escaping + m * k,
                         r->remaining + m * k);
-        interpolation_weights(o, mu[m], r->weights + m * n);
+        lq_node_axis_weights(&o->down, mu[m], r->weights + m * n);
     }
     r->at = (lq_readout){count, r->escaping, r->remaining, r->weights};
     return true;
@@ -290,7 +185,7 @@ static void batch_free(batch *b) {
 }
 
 static lq_v8 *vectors(size_t count) {
-    return (lq_v8 *)(void *)zeros(count * LQ_LANES);
+    return (lq_v8 *)(void *)lq_zeros(count * LQ_LANES);
 }
 
 static bool batch_make(batch *b, const operators *o, size_t mu_count) {

@@ -1,0 +1,103 @@
+/* Node axes: maps, Chebyshev points and interpolation. */
+#define _POSIX_C_SOURCE 200809L
+#include "precompute/nodes.h"
+
+#include "microfacet/ndf.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+double *lq_zeros(size_t count) {
+    void *p = NULL;
+    if (posix_memalign(&p, sizeof(lq_v8), (count ? count : 1) * sizeof(double))) return NULL;
+    memset(p, 0, count * sizeof(double));
+    return p;
+}
+
+static double map_forward(const lq_cosine_map *map, double mu) {
+    const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
+    return map->scale * asinh(t * map->inverse_alpha) + map->shift;
+}
+
+static double map_inverse(const lq_cosine_map *map, double x) {
+    const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
+    return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
+}
+
+/* The map of one element: the whole axis, stretched so that the element is [-1, 1]. */
+static lq_cosine_map map_of(double alpha, lq_sense sense, double from, double to) {
+    lq_cosine_map map = {1.0 / alpha, 1.0, 0.0, sense == LQ_RISING};
+    const double x0 = map_forward(&map, from), x1 = map_forward(&map, to);
+    map.scale = 2.0 / (x1 - x0);
+    map.shift = -(x0 + x1) / (x1 - x0);
+    return map;
+}
+
+static double chebyshev_angle(int nodes, int i) {
+    return pi * (nodes - 1 - i + 0.5) / nodes;
+}
+
+bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split) {
+    *axis = (lq_node_axis){.count = count, .elements = split > 0.0 && split < 1.0 ? 2 : 1};
+    const int n = axis->nodes = count / axis->elements;
+    axis->bound[1] = split;
+    axis->bound[axis->elements] = 1.0;
+    axis->basis = lq_zeros((size_t)n * (size_t)n);
+    if (!axis->basis) return false;
+    for (int m = 0; m < n; m++)
+        for (int i = 0; i < n; i++)
+            axis->basis[m * n + i] = (m ? 2.0 : 1.0) / n * cos(m * chebyshev_angle(n, i));
+    for (int e = 0; e < axis->elements; e++) {
+        axis->map[e] = map_of(alpha, sense, axis->bound[e], axis->bound[e + 1]);
+        for (int i = 0; i < n; i++)
+            axis->mu[e * n + i] = map_inverse(&axis->map[e], cos(chebyshev_angle(n, i)));
+    }
+    return true;
+}
+
+void lq_node_axis_free(lq_node_axis *axis) {
+    free(axis->basis);
+    axis->basis = NULL;
+}
+
+static int element_of(const lq_node_axis *axis, double mu) {
+    return axis->elements == 2 && mu > axis->bound[1];
+}
+
+double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
+                            const double *cosine, const double *weight, double *moments) {
+    double total = 0.0;
+    for (size_t from = 0; from < count;) {
+        /* Those of one element are neighbours. */
+        const int e = element_of(axis, cosine[from]);
+        size_t to = axis->elements == 1 ? count : from + 1;
+        while (to < count && element_of(axis, cosine[to]) == e) to++;
+        double *of_element = moments + e * axis->nodes;
+        const double before = of_element[0];
+        kernels->moments(&axis->map[e], to - from, cosine + from, weight + from, axis->nodes, of_element);
+        total += of_element[0] - before;
+        from = to;
+    }
+    return total;
+}
+
+void lq_node_axis_project(const lq_node_axis *axis, const double *moments, double *weights) {
+    const int n = axis->nodes;
+    memset(weights, 0, (size_t)axis->count * sizeof *weights);
+    for (int e = 0; e < axis->elements; e++, weights += n)
+        for (int m = 0; m < n; m++) {
+            const double moment = moments[e * n + m];
+            for (int i = 0; i < n; i++) weights[i] += moment * axis->basis[m * n + i];
+        }
+}
+
+void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights) {
+    double moments[LQ_NODES_MAX] = {0.0};
+    const int e = element_of(axis, mu);
+    const double angle = acos(fmax(fmin(map_forward(&axis->map[e], mu), 1.0), -1.0));
+    for (int m = 0; m < axis->nodes; m++) moments[e * axis->nodes + m] = cos(m * angle);
+    lq_node_axis_project(axis, moments, weights);
+}

@@ -1,0 +1,49 @@
+/* The cosines at which the solvers hold their unknowns, and interpolation between them.
+ *
+ * Nodes are Chebyshev points of x, which is logarithmic in the cosine down to alpha and linear below:
+ * energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take twice the tangent
+ * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
+ * An axis can be divided at a cosine where the energy changes abruptly (a critical angle); each element has
+ * its own points.
+ */
+#ifndef LACQUER_PRECOMPUTE_NODES_H
+#define LACQUER_PRECOMPUTE_NODES_H
+
+#include "precompute/kernels.h"
+
+#include <stdbool.h>
+
+typedef enum lq_sense { LQ_FALLING, LQ_RISING } lq_sense;
+
+enum { LQ_ELEMENTS_MAX = 2 };
+
+typedef struct lq_node_axis {
+    int count;                         /* of all nodes */
+    int elements;                      /* 1 or 2 */
+    int nodes;                         /* of one element */
+    double bound[LQ_ELEMENTS_MAX + 1]; /* cosines */
+    lq_cosine_map map[LQ_ELEMENTS_MAX];
+    double mu[LQ_NODES_MAX]; /* the nodes, ascending */
+    double *basis;           /* node values to Chebyshev coefficients, [m * nodes + i] */
+} lq_node_axis;
+
+/* `count` nodes (even where divided, at most LQ_NODES_MAX); `split` in (0,1), or 0 for one element. False
+ * without memory; free it in either case. */
+bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split);
+void lq_node_axis_free(lq_node_axis *axis);
+
+/* Add weighted cosines, running monotonically, to the Chebyshev moments of the axis, [element * nodes + m].
+ * Returns the sum of their weights. */
+double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
+                            const double *cosine, const double *weight, double *moments);
+
+/* From moments to weights on the nodes: sum_i weights[i] f(mu_i) stands for the weighted sum of f. */
+void lq_node_axis_project(const lq_node_axis *axis, const double *moments, double *weights);
+
+/* Interpolation weights at one cosine. */
+void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights);
+
+/* `count` doubles, zero, aligned to a vector; NULL without memory. */
+double *lq_zeros(size_t count);
+
+#endif
