@@ -24,12 +24,12 @@ extern "C" {
 
 typedef enum lq_status {
     LQ_OK = 0,
-    LQ_BAD_INPUT,     /* an argument outside what is accepted */
-    LQ_IO,            /* the system refused to open, read, write or rename a file */
-    LQ_FORMAT,        /* a file that is not what it should be: foreign, truncated, damaged */
+    LQ_BAD_INPUT, /* an argument outside what is accepted */
+    LQ_IO,        /* the system refused to open, read, write or rename a file */
+    LQ_FORMAT,    /* a file that is not what it should be: foreign, truncated, damaged */
     LQ_NO_MEMORY,
-    LQ_CANCELLED,     /* a progress callback asked to stop */
-    LQ_NOT_CONVERGED  /* the tolerance was not reached; value and error are still valid */
+    LQ_CANCELLED,    /* a progress callback asked to stop */
+    LQ_NOT_CONVERGED /* the tolerance was not reached; value and error are still valid */
 } lq_status;
 
 enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 6, LQ_MAX_CHANNELS = 8 };
@@ -138,6 +138,30 @@ lq_status lq_table_write_exr(const lq_table *table, const char *path, lq_error *
 lq_status lq_table_read_exr(lq_table **table, const char *path, lq_error *error);
 lq_status lq_table_write_npy(const lq_table *table, const char *path, lq_error *error);
 
+/* Binary layouts that published renderers load (docs/formats.md). None says what it holds: the layout and the
+ * kind must be known. A table read from one has the facts of its kind and "layout", but no "tolerance": the
+ * file does not say how it was made. */
+typedef enum lq_layout {
+    LQ_BELCOUR,        /* sizes, ranges, float32 data, last axis fastest: fgd, tir-pass */
+    LQ_TM,             /* the same with the first axis fastest: fgd, tir-loss, albedo (separable masking) */
+    LQ_MITSUBA,        /* Mitsuba 0.6 .dat, seen from outside: transmission at tau = 1; read only */
+    LQ_MITSUBA_INSIDE, /* its second half, seen from inside: transmission, diffuse-transmission; read only */
+    LQ_LAYOUTS
+} lq_layout;
+
+const char *lq_layout_name(lq_layout layout);
+
+/* LQ_BAD_INPUT where the layout does not store that kind, LQ_FORMAT where the file cannot be such a table:
+ * sizes that do not make up its length, ranges that are not finite and ascending. */
+lq_status lq_published_read(lq_table **table, const char *path, lq_layout layout, const char *kind,
+                            lq_error *error);
+/* LQ_BAD_INPUT where the layout cannot hold the table: another kind or masking, an axis that is not linear.
+ */
+lq_status lq_published_write(const lq_table *table, const char *path, lq_layout layout, lq_error *error);
+/* That question alone, before hours of work; `masking` as in the facts of the table to be, or NULL. */
+lq_status lq_published_check(lq_layout layout, const char *kind, const char *masking, const lq_axis *axes,
+                             int axis_count, lq_error *error);
+
 /* ======================================================================================
  *                               The catalogue of table kinds
  * ====================================================================================== */
@@ -167,16 +191,18 @@ enum { LQ_TAKES_SCATTERING = 1, LQ_TAKES_MASKING = 2 };
 
 typedef struct lq_kind {
     const char *id;
-    const char *title;    /* one line */
-    const char *quantity; /* the formula, in plain text */
-    const char *source;   /* paper and equation */
+    const char *title;     /* one line */
+    const char *quantity;  /* the formula, in plain text */
+    const char *source;    /* paper and equation */
+    const char *interface; /* "conductor", "dielectric", or NULL where it makes no difference */
+    const char *usage;     /* how a renderer uses the number, where conventions differ; NULL: as it is */
     int axis_count;
     lq_axis_info axes[LQ_MAX_AXES];
     int channel_count;
     const char *channels[LQ_MAX_CHANNELS];
-    unsigned takes;           /* LQ_TAKES_... */
-    double tolerance;         /* default: absolute error of every value */
-    double finest_tolerance;  /* the smallest that can be asked for */
+    unsigned takes;          /* LQ_TAKES_... */
+    double tolerance;        /* default: absolute error of every value */
+    double finest_tolerance; /* the smallest that can be asked for */
     double value_min, value_max;
 } lq_kind;
 

@@ -28,6 +28,7 @@ void cli_print_axes(FILE *out) {
         const lq_kind *kind = lq_kind_at(i);
         fprintf(out, "\n  %s: %s\n    %s (%s)\n", kind->id, kind->title, kind->quantity, kind->source);
         for (int a = 0; a < kind->axis_count; a++) print_axis(out, &kind->axes[a]);
+        if (kind->usage) fprintf(out, "    usage: %s\n", kind->usage);
         fprintf(out, "    tolerance %g, finest %g\n", kind->tolerance, kind->finest_tolerance);
     }
 }

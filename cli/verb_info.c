@@ -103,38 +103,61 @@ static int print_json(const char *path, const lq_table *table) {
  *                                         Verb
  * ====================================================================================== */
 
+enum { OPTION_FORMAT = 256, OPTION_LAYOUT, OPTION_KIND };
+
+typedef struct info_request {
+    const char *path, *kind;
+    int format, layout; /* layout -1: a file of this program */
+} info_request;
+
 static const cli_option options[] = {
-    {256, "format", "text|json", "how to print (default text)"},
+    {OPTION_FORMAT, "format", "text|json", "how to print (default text)"},
+    {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table"},
+    {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
     {0},
 };
 
-static bool read_arguments(int argc, char **argv, const char **path, int *format) {
+static bool take_option(info_request *request, int id, const char *value) {
     static const char *const formats[] = {"text", "json"};
-    cli_args args = cli_args_begin(&cli_verb_info, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
-        if (id == CLI_BAD) return false;
-        if (id == 256 && (*format = cli_parse_choice("--format", args.value, formats, 2)) < 0) return false;
-        if (id == CLI_WORD && *path) {
-            cli_message("unexpected '%s'; info takes one FILE", args.value);
-            return false;
-        }
-        if (id == CLI_WORD) *path = args.value;
+    const char *layouts[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
+    if (id == OPTION_FORMAT) return (request->format = cli_parse_choice("--format", value, formats, 2)) >= 0;
+    if (id == OPTION_LAYOUT)
+        return (request->layout = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS)) >= 0;
+    if (id == OPTION_KIND) {
+        request->kind = value;
+        return true;
     }
-    if (!*path) cli_message("no file; usage: lacquer info %s", cli_verb_info.usage);
-    return *path != NULL;
+    if (request->path) cli_message("unexpected '%s'; info takes one FILE", value);
+    else request->path = value;
+    return request->path == value;
+}
+
+static bool read_arguments(info_request *request, int argc, char **argv) {
+    cli_args args = cli_args_begin(&cli_verb_info, argc, argv);
+    for (int id; (id = cli_args_next(&args)) != CLI_END;)
+        if (id == CLI_BAD || !take_option(request, id, args.value)) return false;
+    if (!request->path) cli_message("no file; usage: lacquer info %s", cli_verb_info.usage);
+    else if (request->layout >= 0 && !request->kind)
+        cli_message("--layout needs --kind: a published file does not say which table it holds");
+    else if (request->layout < 0 && request->kind) cli_message("--kind needs --layout");
+    else return true;
+    return false;
 }
 
 static int run(int argc, char **argv) {
-    const char *path = NULL;
-    int format = 0;
-    if (!read_arguments(argc, argv, &path, &format)) return CLI_FAILED;
+    info_request request = {.layout = -1};
+    if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
     lq_table *table = NULL;
     lq_error error = {""};
-    lq_status status = lq_table_read_exr(&table, path, &error);
+    const lq_status status =
+        request.layout < 0
+            ? lq_table_read_exr(&table, request.path, &error)
+            : lq_published_read(&table, request.path, (lq_layout)request.layout, request.kind, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     int code = CLI_DONE;
-    if (format == 1) code = print_json(path, table);
-    else print_text(path, table);
+    if (request.format == 1) code = print_json(request.path, table);
+    else print_text(request.path, table);
     lq_table_free(table);
     return code;
 }
@@ -142,9 +165,10 @@ static int run(int argc, char **argv) {
 const cli_verb cli_verb_info = {
     .name = "info",
     .summary = "axes, channels and provenance of a stored table",
-    .usage = "FILE [--format text|json]",
+    .usage = "FILE [--format text|json] [--layout LAYOUT --kind TABLE]",
     .options = options,
     .examples = "lacquer info fgd.exr\n"
-                "lacquer info --format json fgd.exr",
+                "lacquer info --format json fgd.exr\n"
+                "lacquer info TIR.bin --layout belcour --kind tir-pass",
     .run = run,
 };

@@ -51,11 +51,16 @@ static void place_facets(const lq_fan_constants *k, size_t count, const double *
     const double lambda = k->lambda, lambda2 = k->lambda2, sin_v = k->sin_v;
     const double tilt0 = k->tilt0, tilt1 = k->tilt1, mirror0 = k->mirror0, mirror1 = k->mirror1;
     for (size_t i = 0; i < count; i++) {
-        const double h2 = h[i] * h[i];
-        double s = sin_series[SIN_TERMS - 1];
-        for (int t = SIN_TERMS - 2; t >= 0; t--) s = s * h2 + sin_series[t];
+        /* The cosine has a series of its own: against lambda^2 ~ alpha^2, 1 - sin^2 would be rounding. */
+        const double h2 = h[i] * h[i], g = 1.57079632679489661923 - h[i], g2 = g * g;
+        double s = sin_series[SIN_TERMS - 1], c = sin_series[SIN_TERMS - 1];
+        for (int t = SIN_TERMS - 2; t >= 0; t--) {
+            s = s * h2 + sin_series[t];
+            c = c * g2 + sin_series[t];
+        }
         s *= h[i];
-        const double s2 = s * s, rest = 1.0 - s2, c2 = rest > 0.0 ? rest : 0.0;
+        c *= g;
+        const double s2 = s * s, c2 = c * c;
         const double inverse = 1.0 / (c2 + lambda2 * s2);
         const double half = lambda2 * s2 * inverse; /* sin^2(psi/2) */
         const double tilt = tilt0 + tilt1 * half;

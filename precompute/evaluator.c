@@ -9,8 +9,18 @@
 #include <string.h>
 
 const lq_evaluator *lq_evaluator_find(const char *id) {
-    static const lq_evaluator *const all[] = {&lq_evaluate_fgd, &lq_evaluate_albedo,
-                                              &lq_evaluate_albedo_average, &lq_evaluate_dfg};
+    static const lq_evaluator *const all[] = {&lq_evaluate_fgd,
+                                              &lq_evaluate_albedo,
+                                              &lq_evaluate_albedo_average,
+                                              &lq_evaluate_dfg,
+                                              &lq_evaluate_tir_pass,
+                                              &lq_evaluate_tir_loss,
+                                              &lq_evaluate_fgd_dielectric,
+                                              &lq_evaluate_transmission,
+                                              &lq_evaluate_diffuse_transmission,
+                                              &lq_evaluate_diffuse_reflection,
+                                              &lq_evaluate_variance,
+                                              &lq_evaluate_coated_lambertian};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (strcmp(all[i]->id, id) == 0) return all[i];
     return NULL;
@@ -37,7 +47,7 @@ static lq_status check_nodes(const lq_job *job, lq_error *error) {
 }
 
 static lq_status choose_ndf(lq_job *job, const char *id, lq_error *error) {
-    char known[256] = "";
+    char known[512] = "";
     job->ndf = lq_ndf_find(id);
     if (job->ndf) return LQ_OK;
     for (size_t i = 0, used = 0; i < lq_ndf_builtin_count() && used < sizeof known; i++)

@@ -78,6 +78,7 @@ double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking mas
 double lq_smooth_masking_error(double alpha, const double *mu, size_t count) {
     double worst = 0.0;
     for (size_t i = 0; i < count; i++)
-        if (mu[i] > 0.0) worst = fmax(worst, fmin(alpha / mu[i] * (alpha / mu[i]), 0.1));
+        if (alpha > 0.0)
+            worst = fmax(worst, mu[i] > 0.0 ? fmin(alpha / mu[i] * (alpha / mu[i]), 0.12) : 0.12);
     return worst;
 }

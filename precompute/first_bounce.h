@@ -17,7 +17,7 @@
  * lobe. */
 #define LQ_SMOOTH_ALPHA 1e-8
 
-/* What treating it so can cost `escaping` at F = 1: masking takes up to a tenth at mu ~ alpha, and
+/* What treating it so can cost `escaping` at F = 1: masking takes up to 0.12 at mu ~ alpha, and
  * (alpha/mu)^2 away from grazing. The largest over `count` cosines. */
 double lq_smooth_masking_error(double alpha, const double *mu, size_t count);
 

@@ -5,9 +5,10 @@
 #include <stddef.h>
 
 enum {
-    LQ_LANES = 8,       /* materials that are solved together */
-    LQ_NODES_MAX = 192, /* cosines of the finest level */
-    LQ_FACETS_MAX = 128 /* facets handed over at once */
+    LQ_LANES = 8,        /* materials that are solved together */
+    LQ_NODES_MAX = 192,  /* cosines of the finest level */
+    LQ_FACETS_MAX = 128, /* facets handed over at once */
+    LQ_DEPTHS_LIMIT = 40 /* collocation depths of the finest level */
 };
 
 /* Eight doubles in GCC's vector extension: one zmm register, two ymm or four xmm. Always passed by pointer:
@@ -44,6 +45,17 @@ typedef struct lq_readout {
     const double *weights;   /* [mu * nodes + i]: interpolation from the nodes */
 } lq_readout;
 
+/* One side of a dielectric (dielectric.c). E and C at depth k: [k * 2 nodes + q], q rising, then falling. */
+typedef struct lq_two_sided {
+    int nodes, depths;
+    const double *fall, *rise; /* rows of 4 nodes: own rising, own falling, other rising, falling */
+    const double *travel_down, *travel_up; /* [(node * depths + from) * depths + at] */
+    lq_v8 *own;                            /* E of this side */
+    const lq_v8 *other;                    /* E of the other side, whose depths count backwards */
+    lq_v8 *before;                         /* C of this side */
+    const lq_v8 *reward;                   /* [rising node] */
+} lq_two_sided;
+
 typedef struct lq_solver_kernels {
     /* Chebyshev moments: moments[m] += sum_i weight[i] T_m(x(cosine[i])), m < count_moments. */
     void (*moments)(const lq_cosine_map *map, size_t count, const double *cosine, const double *weight,
@@ -60,6 +72,10 @@ typedef struct lq_solver_kernels {
     void (*assemble)(const lq_sylvester *s);
     double (*sweep)(const lq_sylvester *s);
     void (*survival)(const lq_sylvester *s, lq_v8 *ratio);
+    /* E of one side from C, returning the largest change; survival[depth * nodes + j] = u^Lambda. C from E.
+     */
+    double (*travel)(const lq_two_sided *s, const double *survival);
+    void (*meet)(const lq_two_sided *s);
     void (*read)(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio, lq_v8 *energy);
 } lq_solver_kernels;
 

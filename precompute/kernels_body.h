@@ -245,8 +245,67 @@ static void read_energies(const lq_readout *readout, const lq_sylvester *s, cons
     }
 }
 
+/* E(u_k) of one node = direct + sum_l weights[k][l] C(u_l), at every depth; C and E are `step` apart. */
+static double travel_node(int depths, const double *weights, const lq_v8 *c, size_t step, const lq_v8 *direct,
+                          lq_v8 *e) {
+    double most = 0.0;
+    for (int k = 0; k < depths; k++) {
+        lq_v8 sum = direct[k];
+        for (int l = 0; l < depths; l++) sum += weights[k * depths + l] * c[(size_t)l * step];
+        const double change = largest_change(&sum, &e[(size_t)k * step]);
+        most = change > most ? change : most;
+        e[(size_t)k * step] = sum;
+    }
+    return most;
+}
+
+static double travel(const lq_two_sided *s, const double *survival) {
+    const int n = s->nodes;
+    const size_t step = 2 * (size_t)n, matrix = (size_t)s->depths * (size_t)s->depths;
+    const lq_v8 none[LQ_DEPTHS_LIMIT] = {{0.0}};
+    lq_v8 direct[LQ_DEPTHS_LIMIT];
+    double most = 0.0;
+    for (int j = 0; j < n; j++) {
+        for (int k = 0; k < s->depths; k++) direct[k] = survival[k * n + j] * s->reward[j];
+        const double up = travel_node(s->depths, s->travel_up + (size_t)j * matrix, s->before + j, step,
+                                      direct, s->own + j);
+        const double down = travel_node(s->depths, s->travel_down + (size_t)j * matrix, s->before + n + j,
+                                        step, none, s->own + n + j);
+        most = up > most ? up : most;
+        most = down > most ? down : most;
+    }
+    return most;
+}
+
+/* Four rows of a facet operator against the directions of both sides at one depth. */
+static inline void meet_rows(int rows, int n, const double *operators, const lq_v8 *own, const lq_v8 *other,
+                             lq_v8 *out) {
+    lq_v8 sum[4] = {{0.0}};
+    const double *p = operators;
+    for (int q = 0; q < 2 * n; q++)
+        for (int r = 0; r < rows; r++) sum[r] += p[r * 4 * n + q] * own[q];
+    p += 2 * n;
+    for (int q = 0; q < 2 * n; q++)
+        for (int r = 0; r < rows; r++) sum[r] += p[r * 4 * n + q] * other[q];
+    for (int r = 0; r < rows; r++) out[r] = sum[r];
+}
+
+static void meet(const lq_two_sided *s) {
+    const int n = s->nodes;
+    for (int k = 0; k < s->depths; k++) {
+        const lq_v8 *own = s->own + (size_t)k * 2 * (size_t)n;
+        const lq_v8 *other = s->other + (size_t)(s->depths - 1 - k) * 2 * (size_t)n;
+        lq_v8 *c = s->before + (size_t)k * 2 * (size_t)n;
+        /* All node counts are multiples of four. */
+        for (int i = 0; i < n; i += 4) {
+            meet_rows(4, n, s->rise + (size_t)i * 4 * (size_t)n, own, other, c + i);
+            meet_rows(4, n, s->fall + (size_t)i * 4 * (size_t)n, own, other, c + n + i);
+        }
+    }
+}
+
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments, escaping, spread,       assemble,
-                                              sweep,   survival, read_energies};
+    static const lq_solver_kernels kernels = {moments,  escaping, spread, assemble,     sweep,
+                                              survival, travel,   meet,   read_energies};
     return &kernels;
 }

@@ -63,6 +63,18 @@ static lq_status prepare(const lq_job *job, void **out, lq_error *error) {
     return LQ_OK;
 }
 
+/* How much an error common to all curves can grow when they are combined. */
+static double amplification(const lq_conductors *materials) {
+    const size_t curves = (size_t)materials->curves.count;
+    double most = 0.0;
+    for (size_t i = 0; i < materials->count; i++) {
+        double sum = 1.0;
+        for (size_t k = 1; k < curves; k++) sum += fabs(materials->coefficients[i * curves + k]);
+        most = fmax(most, sum);
+    }
+    return most;
+}
+
 /* Single scattering of every material: the curves' integrals, combined. */
 static lq_status single_energies(const lq_job *job, double alpha, const lq_conductors *materials,
                                  double *energy, double *estimate, lq_error *error) {
@@ -70,9 +82,13 @@ static lq_status single_energies(const lq_job *job, double alpha, const lq_condu
     double *first = malloc(mus * curves * sizeof *first);
     if (!first) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", mus);
     *estimate = lq_smooth_masking_error(alpha, job->nodes[MU], mus) + 1e-15;
-    if (alpha >= LQ_SMOOTH_ALPHA)
-        *estimate = lq_first_bounce_converged(job->ndf, alpha, job->masking, job->nodes[MU], mus,
-                                              &materials->curves, 0.25 * job->tolerance, first);
+    if (alpha >= LQ_SMOOTH_ALPHA) {
+        const double factor = amplification(materials);
+        *estimate =
+            factor * lq_first_bounce_converged(job->ndf, alpha, job->masking, job->nodes[MU], mus,
+                                               &materials->curves, 0.9 * job->tolerance / factor, first) +
+            materials->missed;
+    }
     for (size_t i = 0; i < materials->count; i++) {
         const double *c = materials->coefficients + i * curves;
         for (size_t m = 0; m < mus; m++) {

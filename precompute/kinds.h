@@ -4,9 +4,17 @@
 
 #include "precompute/evaluator.h"
 
-extern const lq_evaluator lq_evaluate_fgd;            /* kind_fgd.c */
-extern const lq_evaluator lq_evaluate_albedo;         /* kind_albedo.c */
-extern const lq_evaluator lq_evaluate_albedo_average; /* kind_albedo.c */
-extern const lq_evaluator lq_evaluate_dfg;            /* kind_albedo.c */
+extern const lq_evaluator lq_evaluate_fgd;                  /* kind_fgd.c */
+extern const lq_evaluator lq_evaluate_albedo;               /* kind_albedo.c */
+extern const lq_evaluator lq_evaluate_albedo_average;       /* kind_albedo.c */
+extern const lq_evaluator lq_evaluate_dfg;                  /* kind_albedo.c */
+extern const lq_evaluator lq_evaluate_tir_pass;             /* kind_tir.c */
+extern const lq_evaluator lq_evaluate_tir_loss;             /* kind_tir.c */
+extern const lq_evaluator lq_evaluate_fgd_dielectric;       /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_transmission;         /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_diffuse_transmission; /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_diffuse_reflection;   /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_variance;             /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_coated_lambertian;    /* kind_dielectric.c */
 
 #endif

@@ -152,7 +152,8 @@ static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, 
         {"title", job->kind->title, 0},
         {"quantity", job->kind->quantity, 0},
         {"source", job->kind->source, 0},
-        {"interface", "conductor", LQ_TAKES_SCATTERING},
+        {"usage", job->kind->usage, 0},
+        {"interface", job->kind->interface, 0},
         {"ndf", job->ndf->id, 0},
         {"scattering", job->scattering == LQ_MULTIPLE ? "multiple" : "single", LQ_TAKES_SCATTERING},
         {"masking", job->masking == LQ_CORRELATED ? "correlated" : "separable", LQ_TAKES_MASKING},
@@ -160,7 +161,7 @@ static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, 
     };
     lq_status status = LQ_OK;
     for (size_t i = 0; status == LQ_OK && i < sizeof facts / sizeof facts[0]; i++)
-        if (!facts[i].takes || (facts[i].takes & job->kind->takes))
+        if (facts[i].value && (!facts[i].takes || (facts[i].takes & job->kind->takes)))
             status = lq_table_set_fact(table, facts[i].key, facts[i].value, error);
     if (status == LQ_OK) status = set_number(table, "tolerance", job->tolerance, error);
     if (status == LQ_OK) status = set_bound(table, "error", estimate, error);

@@ -13,8 +13,9 @@
 #include <strings.h>
 
 enum { OPTION_AXIS = 256, OPTION_FORMAT, OPTION_OUTPUT = 'o' };
-enum { FORMAT_EXR, FORMAT_NPY };
-static const char *const formats[] = {[FORMAT_EXR] = "exr", [FORMAT_NPY] = "npy"};
+/* The first two follow from the ending of a file, the published layouts do not. */
+enum { FORMAT_EXR, FORMAT_NPY, FORMAT_BELCOUR, FORMAT_TM, FORMATS, FORMAT_ENDINGS = FORMAT_BELCOUR };
+static const char *const formats[FORMATS] = {"exr", "npy", "belcour", "tm"};
 
 /* Why this is more than LQ_MAX_AXES: a fifth --axis must be refused by its name. */
 enum { MAX_AXIS_OPTIONS = 2 * LQ_MAX_AXES };
@@ -77,15 +78,15 @@ static bool read_arguments(table_request *request, int argc, char **argv) {
 /* From --format, otherwise from the ending of the output file. */
 static bool find_format(table_request *request) {
     if (request->format_text) {
-        request->format = cli_parse_choice("--format", request->format_text, formats, 2);
+        request->format = cli_parse_choice("--format", request->format_text, formats, FORMATS);
         return request->format >= 0;
     }
     const char *dot = strrchr(cli_basename(request->output), '.');
-    for (request->format = 0; request->format < 2; request->format++)
+    for (request->format = 0; request->format < FORMAT_ENDINGS; request->format++)
         if (dot && strcasecmp(dot + 1, formats[request->format]) == 0) return true;
-    cli_message(
-        "%s: the format does not follow from the name; end it in .exr or .npy, or add --format exr|npy",
-        request->output);
+    cli_message("%s: the format does not follow from the name; end it in .exr or .npy, or add --format "
+                "exr|npy|belcour|tm",
+                request->output);
     return false;
 }
 
@@ -183,8 +184,28 @@ static lq_status compute(const table_request *request, const lq_kind *kind, cons
 static lq_status write_table(const table_request *request, lq_table *table, lq_error *error) {
     lq_status status = lq_table_set_fact(table, "command", request->command, error);
     if (status != LQ_OK) return status;
-    return request->format == FORMAT_NPY ? lq_table_write_npy(table, request->output, error)
-                                         : lq_table_write_exr(table, request->output, error);
+    switch (request->format) {
+    case FORMAT_NPY:
+        return lq_table_write_npy(table, request->output, error);
+    case FORMAT_BELCOUR:
+        return lq_published_write(table, request->output, LQ_BELCOUR, error);
+    case FORMAT_TM:
+        return lq_published_write(table, request->output, LQ_TM, error);
+    default:
+        return lq_table_write_exr(table, request->output, error);
+    }
+}
+
+/* Can the format hold the table to be? Asked before the work. */
+static bool format_suits(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
+    const bool separable = request->settings.settings.masking == LQ_SEPARABLE;
+    const char *masking = kind->takes & LQ_TAKES_MASKING ? separable ? "separable" : "correlated" : NULL;
+    lq_error error = {""};
+    if (request->format < FORMAT_BELCOUR) return true;
+    const lq_layout layout = request->format == FORMAT_TM ? LQ_TM : LQ_BELCOUR;
+    if (lq_published_check(layout, kind->id, masking, axes, kind->axis_count, &error) == LQ_OK) return true;
+    cli_message("%s", error.text);
+    return false;
 }
 
 static int precompute(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
@@ -221,8 +242,11 @@ static int run(int argc, char **argv) {
     if (!kind) return cli_fail("%s", error.text);
     if (!cli_settings_suit(&request.settings, kind) || !find_format(&request)) return CLI_FAILED;
     if (!cli_output_check(request.output) || !make_axes(&request, kind, axes)) return CLI_FAILED;
-    request.command = write_command(&request);
-    int code = request.command ? precompute(&request, kind, axes) : cli_fail("out of memory");
+    int code = CLI_FAILED;
+    if (format_suits(&request, kind, axes)) {
+        request.command = write_command(&request);
+        code = request.command ? precompute(&request, kind, axes) : cli_fail("out of memory");
+    }
     free(request.command);
     free_axes(kind, axes);
     return code;
@@ -230,7 +254,7 @@ static int run(int argc, char **argv) {
 
 static const cli_option options[] = {
     {OPTION_OUTPUT, "output", "FILE", "where to write (required); the ending .exr or .npy picks the format"},
-    {OPTION_FORMAT, "format", "exr|npy", "the format, whatever the ending"},
+    {OPTION_FORMAT, "format", "exr|npy|belcour|tm", "the format, whatever the ending; see lacquer list"},
     {OPTION_AXIS, "axis", "NAME=MIN:MAX:N[:MAP]", "nodes of one axis (default: below); may be repeated"},
     CLI_SETTINGS_OPTIONS,
     CLI_THREADS_OPTION,
@@ -255,6 +279,7 @@ const cli_verb cli_verb_precompute = {
     .examples = "lacquer precompute albedo -o albedo.exr\n"
                 "lacquer precompute fgd -o fgd.exr\n"
                 "lacquer precompute fgd --axis mu=0:1:32:sqrt --axis n=0.2 --axis kappa=3.9 -o silver.exr\n"
-                "lacquer precompute dfg --tolerance 1e-7 -o dfg.npy",
+                "lacquer precompute dfg --tolerance 1e-7 -o dfg.npy\n"
+                "lacquer precompute tir-pass --format belcour -o TIR.bin",
     .run = run,
 };

@@ -65,9 +65,9 @@ static void test_refused(void **state) {
     const char *twins[] = {"a", "b", "a"}, *empty[] = {""}, *plain[] = {"a b"};
     const char *axis_names[] = {"p", "q", "r", "s", "t"};
     for (int i = 0; i < 5; i++) make(&axes[i], "0:1:2", axis_names[i]);
-    refuse(axes, 0, names, 1, "1 to 4");
-    refuse(axes, 5, names, 1, "1 to 4");
-    refuse(axes, -1, names, 1, "1 to 4");
+    refuse(axes, 0, names, 1, "1 to 6");
+    refuse(axes, 7, names, 1, "1 to 6");
+    refuse(axes, -1, names, 1, "1 to 6");
     refuse(axes, 2, names, 0, "1 to 8");
     refuse(axes, 2, names, 9, "1 to 8");
     refuse(axes, 2, twins, 3, "two channels called 'a'");

@@ -81,6 +81,56 @@ refused 'exact.*walk' validate fgd.exr --against dice
 refused -- '--budget.*-1' validate fgd.exr --budget -1
 refused 'nonsense' validate fgd.exr --nonsense
 
+# -------------------------------------------------------------------- another table, and published ones
+tir=(--axis mu=0:1:9 --axis alpha=0:1:9 --axis eta=0:1:9)
+run 0 precompute tir-pass "${tir[@]}" -o tir.exr
+run 0 validate tir.exr --against walk --points 24 --samples 20000
+run 0 precompute tir-loss "${tir[@]}" -o loss.exr
+run 0 validate loss.exr --against walk --points 24 --samples 20000
+run 0 precompute tir-pass "${tir[@]}" --format belcour -o tir.bin
+[ "$(stat -c %s tir.bin)" -eq $((12 + 24 + 4 * 729)) ] || fail "tir.bin has $(stat -c %s tir.bin) bytes"
+run 0 info tir.bin --layout belcour --kind tir-pass
+says 'usage +.*r21 \+= \(1 - TIR\) t21'
+
+published=(--layout belcour --kind tir-pass)
+run 0 validate tir.exr --against tir.bin "${published[@]}"
+says 'rms +0.000e\+00'
+says '^passed$'
+run 0 validate tir.bin "${published[@]}"
+says 'tir.bin - exact: tir-pass'
+run 0 validate tir.exr --against tir.bin "${published[@]}" --points 50 --format json
+says '"passed": true'
+run 0 precompute tir-pass "${tir[@]}" --tolerance 1e-7 -o finer.exr
+run 0 validate tir.exr --against finer.exr
+says 'the two agree within their tolerances'
+# other nodes: what FILE says it is, computed there
+run 0 precompute tir-pass --axis mu=0:1:5 --axis alpha=0.1:0.9:5 --axis eta=1:4:7 -o other.exr
+run 0 validate tir.exr --against other.exr
+says 'the reference is computed at these nodes'
+
+# the same bytes in the other order are another table
+run 2 validate tir.bin --layout tm --kind tir-loss
+says 'FAILED: neither the stated tolerances nor independent noise'
+run 2 validate tir.exr --against finer.exr --budget 1e-12
+run 0 precompute albedo --masking separable --axis mu=0:1:5 --axis alpha=0:1:5 --format tm -o gd.bin
+run 0 validate gd.bin --layout tm --kind albedo
+says 'separable masking'
+
+refused 'needs --kind' validate tir.bin --layout belcour
+refused 'needs --layout' validate tir.exr --against tir.bin --kind tir-pass
+refused 'stores no tir-loss' validate tir.bin --layout belcour --kind tir-loss
+refused "is 'tir-loss', not 'tir-pass'" validate tir.exr --against loss.exr
+refused 'says itself how it was made' validate tir.exr --ndf ggx
+refused 'not a belcour table of fgd' info tir.bin --layout belcour --kind fgd
+head -c 300 tir.bin >short.bin
+refused 'do not make up its length' validate tir.exr --against short.bin "${published[@]}"
+refused 'not a belcour table' validate tir.exr --against tir.exr "${published[@]}"
+refused 'is not exact, walk or a file' validate tir.exr --against missing.bin "${published[@]}"
+refused 'stores linear axes' precompute tir-pass --axis mu=0:1:9:sqrt --format belcour -o bad.bin
+refused 'separable masking, not correlated' precompute albedo --format tm -o bad.bin
+refused 'does not follow from the name' precompute tir-pass -o bad.bin
+[ ! -e bad.bin ] || fail "a refused table left a file"
+
 # ------------------------------------------------------------------------------------------- bench
 run 0 bench albedo-average --points 4 --csv bench.csv --svg bench.svg --seed 5
 says 'seed 5'

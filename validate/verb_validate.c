@@ -8,32 +8,45 @@
 #include "validate/walk_kind.h"
 
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
-enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT };
+enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, LAYOUT, KIND };
 
 static const cli_option options[] = {
-    {AGAINST, "against", "exact|walk", "exact: the solver only; walk: random walks as well (default exact)"},
+    {AGAINST, "against", "exact|walk|OTHER",
+     "the solver; random walks as well; another table, EXR or published (default exact)"},
+    {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table"},
+    {KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
     {SAMPLES, "samples", "N", "random walks per point (default 100000)"},
     {POINTS, "points", "P", "points, half of them stored entries (default 256)"},
     {SEED, "seed", "S", "of the points and of the walks (default 1)"},
     {BUDGET, "budget", "E", "largest error that stored and interpolated values may have"},
     {FORMAT, "format", "text|json", "of the report (default text)"},
+    CLI_SETTINGS_OPTIONS,
     CLI_THREADS_OPTION,
     {0},
 };
 
 static void print_notes(FILE *out) {
-    fprintf(out,
-            "Half of the points are stored entries, half lie anywhere between them; a third has mu <= 0.1\n"
-            "and a third alpha <= 0.1. Compared are\n"
-            "  stored - exact         the file against the solver at a tenth of its tolerance\n"
-            "  interpolated - exact   the interpolation error between the nodes (judged by --budget only)\n"
-            "  stored - walk          the file against random walks that share its NDF and Fresnel code, no "
-            "more\n"
-            "  exact - walk           the solver itself against them, between the nodes\n"
-            "z is what a difference exceeds the stated tolerance by, in standard errors of the walk.\n"
-            "Exit code 2: a stored value is off by more than its tolerance, z is larger than chance\n"
-            "explains, or --budget is exceeded.\n");
+    fprintf(
+        out,
+        "Half of the points are stored entries, half lie anywhere between them; a third has mu <= 0.1\n"
+        "and a third alpha <= 0.1. Compared are\n"
+        "  stored - exact         the file against the solver at a tenth of its tolerance\n"
+        "  interpolated - exact   the interpolation error between the nodes (judged by --budget only)\n"
+        "  stored - walk          the file against random walks that share its NDF and Fresnel code, no "
+        "more\n"
+        "  exact - walk           the solver itself against them, between the nodes\n"
+        "z is what a difference exceeds the stated tolerance by, in standard errors of the walk.\n"
+        "Exit code 2: a stored value is off by more than its tolerance, z is larger than chance\n"
+        "explains, or --budget is exceeded.\n\n"
+        "With --against OTHER, OTHER minus FILE is taken at every node of OTHER, or at --points P of them\n"
+        "drawn at random; where FILE has other nodes, what it says it holds is computed there. A published\n"
+        "FILE alone is compared with the solver; --ndf, --scattering, --masking and --tolerance say what\n"
+        "to compute, because it does not. Noise of independent samples is uncorrelated between\n"
+        "neighbours, a bias is not. Exit code 2: --budget is exceeded or, without one, neither the\n"
+        "tolerances nor such noise explain the difference.\n");
 }
 
 static int run(int argc, char **argv);
@@ -46,15 +59,26 @@ const cli_verb cli_verb_validate = {
     .notes = print_notes,
     .examples = "lacquer validate fgd.exr\n"
                 "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
-                "lacquer validate fgd.exr --budget 1e-3 --format json",
+                "lacquer validate fgd.exr --budget 1e-3 --format json\n"
+                "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate TIR.bin --layout belcour --kind tir-pass",
     .run = run,
 };
 
 static bool take_against(validate_request *request, const char *text) {
-    static const char *const choices[] = {"exact", "walk"};
-    const int choice = cli_parse_choice("--against", text, choices, 2);
-    request->walk = choice == 1;
-    return choice >= 0;
+    request->walk = strcmp(text, "walk") == 0;
+    request->other = NULL;
+    if (request->walk || strcmp(text, "exact") == 0) return true;
+    request->other = text;
+    if (access(text, R_OK) == 0) return true;
+    cli_message("--against: '%s' is not exact, walk or a file that can be read", text);
+    return false;
+}
+
+static bool take_layout(validate_request *request, const char *text) {
+    const char *names[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) names[i] = lq_layout_name((lq_layout)i);
+    return (request->layout = cli_parse_choice("--layout", text, names, LQ_LAYOUTS)) >= 0;
 }
 
 static bool take_format(validate_request *request, const char *text) {
@@ -66,12 +90,19 @@ static bool take_format(validate_request *request, const char *text) {
 
 static bool take(validate_request *request, int id, const char *value) {
     size_t threads = 0;
+    if (id >= CLI_NDF && id < CLI_THREADS) return cli_settings_take(&request->settings, id, value) > 0;
     switch (id) {
     case AGAINST:
         return take_against(request, value);
     case SAMPLES:
         return cli_parse_count("--samples", value, 2, LQ_WALK_MAX_SAMPLES, &request->samples);
+    case LAYOUT:
+        return take_layout(request, value);
+    case KIND:
+        request->kind = value;
+        return true;
     case POINTS:
+        request->points_given = true;
         return cli_parse_count("--points", value, 2, 10000000, &request->points);
     case SEED:
         return cli_parse_count("--seed", value, 0, SIZE_MAX, &request->seed);
@@ -94,8 +125,24 @@ static bool take(validate_request *request, int id, const char *value) {
     return false;
 }
 
+/* Do the options about published tables go together? */
+static bool suits(const validate_request *request) {
+    const char *given = cli_settings_given(&request->settings);
+    const bool published = request->layout >= 0;
+    if (published && !request->kind)
+        cli_message("--layout needs --kind: a published file does not say which table it holds");
+    else if (!published && request->kind) cli_message("--kind needs --layout");
+    else if (published && request->walk)
+        cli_message("a published table is not checked by walks; drop --layout or --against walk");
+    else if (given && (!published || request->other))
+        cli_message("%s: FILE says itself how it was made; a published FILE takes it, with --layout", given);
+    else return true;
+    return false;
+}
+
 static bool parse(validate_request *request, int argc, char **argv) {
-    *request = (validate_request){.samples = 100000, .points = 256, .seed = 1};
+    *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
+    request->settings = cli_settings_default();
     bool samples_given = false;
     cli_args args = cli_args_begin(&cli_verb_validate, argc, argv);
     for (int id; (id = cli_args_next(&args)) != CLI_END;) {
@@ -104,18 +151,22 @@ static bool parse(validate_request *request, int argc, char **argv) {
     }
     if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
     else if (samples_given && !request->walk) cli_message("--samples needs --against walk");
-    else return true;
+    else return suits(request);
     return false;
 }
 
-static lq_status load(validate_job *job, lq_error *error) {
-    lq_status status = lq_table_read_exr(&job->table, job->request.file, error);
+lq_status validate_load_file(const char *path, lq_table **table, lq_origin *origin, lq_error *error) {
+    lq_status status = lq_table_read_exr(table, path, error);
     if (status != LQ_OK) return status;
     lq_error cause = {""};
-    status = lq_origin_of(job->table, &job->origin, &cause);
-    if (status != LQ_OK)
-        snprintf(error->text, sizeof error->text, "%.200s: %.300s", job->request.file, cause.text);
-    else if (job->request.walk && !lq_walk_knows(job->origin.kind)) {
+    status = lq_origin_of(*table, origin, &cause);
+    if (status != LQ_OK) snprintf(error->text, sizeof error->text, "%.200s: %.300s", path, cause.text);
+    return status;
+}
+
+static lq_status load(validate_job *job, lq_error *error) {
+    lq_status status = validate_load_file(job->request.file, &job->table, &job->origin, error);
+    if (status == LQ_OK && job->request.walk && !lq_walk_knows(job->origin.kind)) {
         status = LQ_BAD_INPUT;
         snprintf(error->text, sizeof error->text, "no random walk is known for table '%s'",
                  job->origin.kind->id);
@@ -134,6 +185,7 @@ static int report(const validate_job *job) {
 static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
+    if (job.request.other || job.request.layout >= 0) return validate_against(&job.request);
     lq_error error = {""};
     lq_status status = load(&job, &error);
     if (status == LQ_OK) {

@@ -3,6 +3,7 @@
 #define LACQUER_VALIDATE_VERB_VALIDATE_H
 
 #include "cli/progress.h"
+#include "cli/settings.h"
 #include "validate/compare.h"
 #include "validate/draw.h"
 #include "validate/origin.h"
@@ -15,6 +16,12 @@ typedef struct validate_request {
     size_t samples, points, seed;
     double budget; /* 0: none */
     int threads;
+    /* Another table: --against OTHER, or FILE itself where it is a published one (other NULL, layout >= 0).
+     */
+    const char *other, *kind;
+    int layout; /* of OTHER, or of FILE where there is none; -1: EXR */
+    cli_settings settings;
+    bool points_given;
 } validate_request;
 
 /* The lists, in the order they are reported. */
@@ -39,6 +46,12 @@ typedef struct validate_job {
     lq_drawn *at;                     /* the stored ones, then those between */
     validate_list lists[VALIDATE_LISTS];
 } validate_job;
+
+/* Read a table of this program and what made it. */
+lq_status validate_load_file(const char *path, lq_table **table, lq_origin *origin, lq_error *error);
+
+/* The whole of `validate --against OTHER`; returns the exit code. */
+int validate_against(const validate_request *request);
 
 /* Draw the points, compute everything at each and reduce the lists. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);

@@ -2,6 +2,7 @@
 #include "validate/walk_kind.h"
 
 #include "tables/status.h"
+#include "validate/walk_lobe.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,6 +40,18 @@ static lq_status walk_dfg(lq_walk *walk, const lq_settings *settings, lq_walk_me
     return lq_walk_single(walk, settings->masking, &values[1], error);
 }
 
+static lq_status walk_tir_pass(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                               lq_error *error) {
+    (void)settings;
+    return lq_walk_lobe(walk, LQ_WALK_PASSES, values, error);
+}
+
+static lq_status walk_tir_loss(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                               lq_error *error) {
+    (void)settings;
+    return lq_walk_lobe(walk, LQ_WALK_LOST, values, error);
+}
+
 static const struct {
     const char *id;
     lq_status (*run)(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values, lq_error *error);
@@ -47,6 +60,8 @@ static const struct {
     {"albedo", walk_albedo},
     {"albedo-average", walk_albedo_average},
     {"dfg", walk_dfg},
+    {"tir-pass", walk_tir_pass},
+    {"tir-loss", walk_tir_loss},
 };
 
 enum { WALKS = sizeof walks / sizeof walks[0] };
@@ -70,7 +85,7 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     if (!walk.ndf) return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'", settings->ndf);
     walk.mu = coordinate(kind, point, "mu", 1.0);
     walk.alpha = coordinate(kind, point, "alpha", 0.0);
-    walk.n = coordinate(kind, point, "n", 1.0);
+    walk.n = coordinate(kind, point, "n", coordinate(kind, point, "eta", 1.0));
     walk.kappa = coordinate(kind, point, "kappa", 0.0);
     walk.samples = run->samples;
     walk.seed = run->seed;

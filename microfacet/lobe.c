@@ -1,0 +1,40 @@
+/* Lobe variance by quadrature: at normal incidence the lobe is D(m) cos theta_m over normals within 45
+ * degrees. */
+#include "microfacet/lobe.h"
+
+#include "microfacet/panels.h"
+
+#include <math.h>
+
+/* f_r cos theta_o domega_o = D(m)/4 domega_o, and domega_o = 4 cos theta_m dm with theta_o = 2 theta_m. */
+double lq_lobe_variance(const lq_ndf *ndf, double alpha) {
+    if (alpha <= 0.0) return 0.0;
+    lq_gauss rule;
+    lq_panels panels;
+    lq_gauss_make(&rule, 24);
+    lq_panels_start(&panels, 0.0, 0.78539816339744830962);
+    lq_panels_grade(&panels, 0.0, alpha, 4.0);
+    double sum = 0.0, moment = 0.0;
+    for (int p = 0; p + 1 < panels.count; p++)
+        for (int i = 0; i < rule.count; i++) {
+            double slope, density;
+            const double theta = lq_panels_map(&panels, p, rule.node[i], &slope);
+            const double s = sin(theta), c = cos(theta), s2 = s * s, c2 = c * c;
+            ndf->density(ndf, alpha, 1, &c2, &s2, &density);
+            const double weight = rule.weight[i] * slope * density * s * c;
+            sum += weight;
+            moment += weight * 4.0 * s2 * c2;
+        }
+    return moment / sum;
+}
+
+double lq_lobe_roughness(const lq_ndf *ndf, double variance) {
+    double low = 0.0, high = 1.0;
+    if (variance <= 0.0) return 0.0;
+    if (variance >= lq_lobe_variance(ndf, 1.0)) return 1.0;
+    for (int step = 0; step < 60 && high - low > 1e-15; step++) {
+        const double middle = 0.5 * (low + high);
+        *(lq_lobe_variance(ndf, middle) < variance ? &low : &high) = middle;
+    }
+    return 0.5 * (low + high);
+}

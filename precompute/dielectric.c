@@ -1,0 +1,458 @@
+/* The two-sided solver of dielectric.h: operators, iteration, readout. */
+#include "precompute/dielectric.h"
+
+#include "microfacet/facets.h"
+#include "microfacet/fresnel.h"
+#include "precompute/depth.h"
+#include "precompute/first_bounce.h"
+#include "precompute/kernels.h"
+#include "precompute/nodes.h"
+#include "tables/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Node cosines, depths, quadrature nodes per panel of d and per piece of azimuth. */
+typedef struct resolution {
+    int nodes, depths, outer, inner;
+} resolution;
+
+static const resolution levels[LQ_DIELECTRIC_LEVELS] = {{12, 12, 8, 8},   {16, 16, 10, 14}, {24, 20, 12, 18},
+                                                        {32, 24, 16, 24}, {48, 32, 24, 32}, {64, 40, 32, 40}};
+
+/* One level of one roughness. Rising and falling directions of both sides use the same nodes, so that light
+ * which crosses undeviated is not interpolated at all. */
+struct lq_rough_level {
+    lq_node_axis axis;
+    double lambda[LQ_NODES_MAX];
+    lq_depths depths;
+    lq_facet_rule rule;
+    double *travel_down, *travel_up; /* [(i * depths + from) * depths + at] */
+    double *survival;                /* [depth * nodes + j]: u^Lambda */
+};
+
+/* One side: the relative index of the other, where its reflectance kinks, and its facet operators: row i of a
+ * falling (rising) ray over the 4 n directions it may be sent to: own side rising, own side falling, other
+ * side rising, other side falling. */
+typedef struct side {
+    double eta;
+    lq_panels kinks;
+    double *fall, *rise;
+} side;
+
+typedef struct interface {
+    const lq_ndf *ndf;
+    double alpha;
+    int nodes;
+    const lq_rough_level *level;
+    side sides[2];
+} interface;
+
+static void interface_free(interface *f) {
+    for (int s = 0; s < 2; s++) {
+        free(f->sides[s].fall);
+        free(f->sides[s].rise);
+    }
+}
+
+/* ----------------------------------------------------------------------------- roughness */
+
+static void level_free(lq_rough_level *r) {
+    if (!r) return;
+    lq_node_axis_free(&r->axis);
+    free(r->travel_down);
+    free(r->travel_up);
+    free(r->survival);
+    free(r);
+}
+
+static void fill_travel(lq_rough_level *r) {
+    const size_t depths = (size_t)r->depths.count, n = (size_t)r->axis.count;
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = 0; k < depths; k++) {
+            const size_t at = (i * depths + k) * depths;
+            lq_travel_down(&r->depths, r->lambda[i], r->depths.u[k], r->travel_down + at);
+            lq_travel_up(&r->depths, r->lambda[i], r->depths.u[k], r->travel_up + at);
+            r->survival[k * n + i] = lq_survival(r->lambda[i], r->depths.u[k]);
+        }
+}
+
+static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolution *l, bool linear) {
+    const size_t n = (size_t)l->nodes, d = (size_t)l->depths;
+    lq_rough_level *r = calloc(1, sizeof *r);
+    if (!r) return NULL;
+    lq_depths_make(&r->depths, l->depths);
+    lq_gauss_make(&r->rule.outer, l->outer);
+    lq_gauss_make(&r->rule.inner, l->inner);
+    r->travel_down = lq_zeros(n * d * d);
+    r->travel_up = lq_zeros(n * d * d);
+    r->survival = lq_zeros(n * d);
+    const bool axis = linear ? lq_node_axis_make_linear(&r->axis, alpha, LQ_RISING, l->nodes)
+                             : lq_node_axis_make(&r->axis, alpha, LQ_RISING, l->nodes, 0.0);
+    if (!axis || !r->travel_down || !r->travel_up || !r->survival) {
+        level_free(r);
+        return NULL;
+    }
+    for (int i = 0; i < l->nodes; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
+    fill_travel(r);
+    return r;
+}
+
+lq_rough lq_rough_start(const lq_ndf *ndf, double alpha) {
+    return (lq_rough){.ndf = ndf, .alpha = alpha};
+}
+
+void lq_rough_free(lq_rough *rough) {
+    for (int kind = 0; kind < 2; kind++)
+        for (int l = 0; l < LQ_DIELECTRIC_LEVELS; l++) level_free(rough->levels[kind][l]);
+}
+
+/* Nearly matched media on a rough surface: light crosses again and again almost undeviated, what little is
+ * reflected depends on cosines of sqrt(2 |eta - 1|) that the nodes do not resolve, and an interpolation that
+ * overshoots ever so slightly would be raised to the power of all these crossings. */
+static bool nearly_matched(double alpha, double eta) {
+    return sqrt(2.0 * fabs(eta - 1.0)) < 0.04 * alpha;
+}
+
+static const lq_rough_level *level_of(lq_rough *rough, double eta, int l) {
+    const bool linear = nearly_matched(rough->alpha, eta);
+    lq_rough_level **r = &rough->levels[linear][l];
+    if (!*r) *r = level_make(rough->ndf, rough->alpha, &levels[l], linear);
+    return *r;
+}
+
+/* --------------------------------------------------------------------------------- facets */
+
+/* Where the facets seen from one direction send light: Chebyshev moments on the node axes of both sides. */
+typedef struct scatter {
+    const lq_solver_kernels *kernels;
+    double eta;
+    const lq_node_axis *axis;
+    double reflected, refracted; /* sums of the weights */
+    double *moments;             /* [4 * nodes], as the rows of side.fall */
+    int nodes;
+    /* Of a ray from outside, if wanted: moments of what is reflected and leaves at once, masking taken at
+     * each facet. */
+    const lq_ndf *ndf;
+    double alpha, mu, area;
+    double *escaping; /* [nodes], or NULL */
+} scatter;
+
+static void add_images(scatter *s, const lq_fan *fan, double factor, double *up, double *down,
+                       double *total) {
+    double weight[LQ_FAN_MAX];
+    const size_t rising = (size_t)fan->up;
+    for (int i = 0; i < fan->count; i++) weight[i] = factor * fan->weight[i];
+    *total += lq_node_axis_moments(s->axis, s->kernels, rising, fan->mirror, weight, up);
+    *total += lq_node_axis_moments(s->axis, s->kernels, (size_t)fan->count - rising, fan->mirror + rising,
+                                   weight + rising, down);
+}
+
+static void add_escaping(scatter *s, const lq_fan *fan, double factor) {
+    double area[LQ_FAN_MAX], weight[LQ_FAN_MAX];
+    const size_t rising = (size_t)fan->up;
+    s->ndf->areas_below(s->ndf, s->alpha, rising, fan->mirror, area);
+    for (size_t i = 0; i < rising; i++) {
+        const double lit = s->area * fan->mirror[i], sum = lit + area[i] * s->mu;
+        weight[i] = sum > 0.0 ? factor * fan->weight[i] * lit / sum : 0.0;
+    }
+    lq_node_axis_moments(s->axis, s->kernels, rising, fan->mirror, weight, s->escaping);
+}
+
+static void add_reflection(void *user, const lq_fan *fan) {
+    scatter *s = user;
+    const double f = lq_fresnel_dielectric(fan->cos_d, s->eta, NULL);
+    if (s->escaping) add_escaping(s, fan, f);
+    add_images(s, fan, f, s->moments, s->moments + s->nodes, &s->reflected);
+}
+
+static void add_refraction(void *user, const lq_fan *fan) {
+    scatter *s = user;
+    const double f = lq_fresnel_dielectric(fan->cos_d, s->eta, NULL);
+    add_images(s, fan, 1.0 - f, s->moments + 2 * s->nodes, s->moments + 3 * s->nodes, &s->refracted);
+}
+
+/* The row of direction v_z on side `s`: weights on the nodes of both sides that add up to 1. `escaping` (may
+ * be NULL) gets the part of the own side's rising weights that leaves at once. */
+static void facet_row(const interface *f, int s, double v_z, double *row, double *escaping) {
+    const side *own = &f->sides[s];
+    const lq_node_axis *axis = &f->level->axis;
+    const lq_facet_rule *rule = &f->level->rule;
+    const int n = f->nodes;
+    double moments[4 * LQ_NODES_MAX] = {0.0}, at_once[LQ_NODES_MAX] = {0.0};
+    const double sine = lq_sine(fabs(v_z));
+    scatter k = {.kernels = lq_solver_kernels_get(), .eta = own->eta, .axis = axis};
+    k.moments = moments;
+    k.nodes = n;
+    if (escaping) {
+        k.ndf = f->ndf;
+        k.alpha = f->alpha;
+        k.mu = v_z;
+        k.area = lq_area_above(f->ndf, f->alpha, v_z, sine);
+        k.escaping = at_once;
+    }
+    lq_facets_visit(f->ndf, f->alpha, v_z, sine, rule, &own->kinks, add_reflection, &k);
+    lq_facets_visit_refracted(f->ndf, f->alpha, own->eta, v_z, sine, rule, &own->kinks, add_refraction, &k);
+    const double scale = 1.0 / (k.reflected + k.refracted);
+    for (int m = 0; m < 4 * n; m++) moments[m] *= scale;
+    for (int m = 0; m < n; m++) at_once[m] *= scale;
+    for (int part = 0; part < 4; part++) lq_node_axis_project(axis, moments + part * n, row + part * n);
+    if (escaping) lq_node_axis_project(axis, at_once, escaping);
+}
+
+/* ----------------------------------------------------------------------------- operators */
+
+static bool interface_make(interface *f, const lq_rough *rough, double eta, const lq_rough_level *level) {
+    const int n = level->axis.count;
+    const size_t row = 4 * (size_t)n;
+    bool ok = true;
+    *f = (interface){.ndf = rough->ndf, .alpha = rough->alpha, .nodes = n, .level = level};
+    for (int s = 0; s < 2; s++) {
+        side *a = &f->sides[s];
+        a->eta = s == 0 ? eta : 1.0 / eta;
+        lq_panels_start(&a->kinks, 0.0, 1.5707963267948966);
+        if (a->eta < 1.0) lq_panels_add(&a->kinks, asin(a->eta), true);
+        ok &= (a->fall = lq_zeros(row * (size_t)n)) && (a->rise = lq_zeros(row * (size_t)n));
+    }
+    for (int i = 0; ok && i < 2 * n; i++) {
+        const int s = i / n, j = i % n;
+        facet_row(f, s, level->axis.mu[j], f->sides[s].fall + (size_t)j * row, NULL);
+        facet_row(f, s, -level->axis.mu[j], f->sides[s].rise + (size_t)j * row, NULL);
+    }
+    if (!ok) interface_free(f);
+    return ok;
+}
+
+/* ------------------------------------------------------------------------------ iteration */
+
+/* One batch of rewards, a lane each. */
+typedef struct solution {
+    lq_v8 *reward;    /* [side * nodes + j], of the rising nodes */
+    lq_v8 *value[2];  /* E: [depth * 2 nodes + (rising, falling)] */
+    lq_v8 *before[2]; /* C: likewise */
+} solution;
+
+static bool solution_make(solution *x, const interface *f) {
+    const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
+    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes) * LQ_LANES);
+    *x = (solution){all + 4 * size, {all, all + size}, {all + 2 * size, all + 3 * size}};
+    return all;
+}
+
+static void solution_free(solution *x) {
+    free(x->value[0]);
+}
+
+static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
+    const side *a = &f->sides[s];
+    return (lq_two_sided){.nodes = f->nodes,
+                          .depths = f->level->depths.count,
+                          .fall = a->fall,
+                          .rise = a->rise,
+                          .travel_down = f->level->travel_down,
+                          .travel_up = f->level->travel_up,
+                          .own = x->value[s],
+                          .other = x->value[1 - s],
+                          .before = x->before[s],
+                          .reward = x->reward + s * f->nodes};
+}
+
+enum { PASSES_MAX = 20000 };
+
+static void solve(const interface *f, solution *x) {
+    const lq_solver_kernels *kernels = lq_solver_kernels_get();
+    const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
+    for (int s = 0; s < 2; s++) memset(x->before[s], 0, size * sizeof(lq_v8));
+    double change = 1.0;
+    for (int pass = 0; pass < PASSES_MAX && change > 1e-9; pass++) {
+        change = 0.0;
+        for (int s = 0; s < 2; s++) {
+            const lq_two_sided k = kernel_of(f, x, s);
+            change = fmax(change, kernels->travel(&k, f->level->survival));
+        }
+        for (int s = 0; s < 2; s++) {
+            const lq_two_sided k = kernel_of(f, x, s);
+            kernels->meet(&k);
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------- readout */
+
+/* Beta weights: the chance that light refracted on its first hit leaves the other side unhindered. */
+static double refracted_escape(double lambda_i, double lambda_o) {
+    if (isinf(lambda_o)) return 0.0;
+    if (isinf(lambda_i)) return lambda_o > 0.0 ? 0.0 : 1.0;
+    return (1.0 + lambda_i) *
+           exp(lgamma(1.0 + lambda_i) + lgamma(1.0 + lambda_o) - lgamma(2.0 + lambda_i + lambda_o));
+}
+
+/* Direct rewards of the first hit only: both escapes in closed form. */
+static void read_single(const interface *f, int s, const double *row, double lambda, const solution *x,
+                        lq_v8 *value) {
+    const int n = f->nodes;
+    lq_v8 sum = {0.0};
+    for (int j = 0; j < n; j++) {
+        const double own = f->level->lambda[j], other = f->level->lambda[j];
+        const double back = isinf(lambda) ? 1.0 : (1.0 + lambda) / (1.0 + lambda + own);
+        sum += row[j] * back * x->reward[s * n + j];
+        sum += row[2 * n + j] * refracted_escape(lambda, other) * x->reward[(1 - s) * n + j];
+    }
+    *value = sum;
+}
+
+/* What a reader needs at one cosine, kept while the batches pass. Near grazing the first facet is met at the
+ * very top, where powers of the depth are all but steps that no collocation sees. Of the light that a rising
+ * node gets, the part that leaves at once is therefore known in closed form, and the value of the rest,
+ * averaged over the depths of arrival, is weighted with what really stays. */
+typedef struct reader {
+    double lambda;
+    double arrival[LQ_DEPTHS_MAX]; /* where a ray from outside meets its first facet */
+    double row[4 * LQ_NODES_MAX];
+    double escaping[2 * LQ_NODES_MAX]; /* of rising nodes, own side then other: leaves at once */
+    double survives[2 * LQ_NODES_MAX]; /* the same per unit of light, as the depths see it */
+    double staying[2 * LQ_NODES_MAX];  /* weight of E minus the reward of what survives */
+} reader;
+
+/* Survival at node j, averaged over the depths of arrival, on the side of arrival or on the other. */
+static double mean_survival(const interface *f, const reader *r, int j, bool own) {
+    const int n = f->nodes, depths = f->level->depths.count;
+    double mean = 0.0;
+    for (int k = 0; k < depths; k++)
+        mean += r->arrival[k] * f->level->survival[(own ? k : depths - 1 - k) * n + j];
+    return mean;
+}
+
+static double reflected_escape(double lambda_i, double lambda_o) {
+    return (1.0 + lambda_i) / (1.0 + lambda_i + lambda_o);
+}
+
+/* The weight of what stays of one node's light, given its exact share: the depths see the share 1 - seen. */
+static double weight_staying(double light, double share, double seen) {
+    return seen < 1.0 - 1e-9 ? light * share / (1.0 - seen) : light;
+}
+
+static void reader_make(reader *r, const interface *f, int s, double mu) {
+    const int n = f->nodes;
+    /* At mu = 0 itself the limit is approached only like mu^Lambda_o, slower than any table resolves. */
+    const double cosine = fmax(mu, LQ_GRAZING);
+    r->lambda = lq_lambda(f->ndf, f->alpha, cosine);
+    lq_travel_down(&f->level->depths, r->lambda, 1.0, r->arrival);
+    facet_row(f, s, cosine, r->row, r->escaping);
+    double stays = 0.0, by_nodes = 0.0; /* reflected upwards, but not out: by facets, and by nodes */
+    for (int j = 0; j < n; j++) {
+        const double *row = r->row;
+        const double lambda = f->level->lambda[j];
+        const double own = reflected_escape(r->lambda, lambda), other = refracted_escape(r->lambda, lambda);
+        r->survives[j] = mean_survival(f, r, j, true);
+        r->survives[n + j] = mean_survival(f, r, j, false);
+        r->escaping[n + j] = row[2 * n + j] * other;
+        r->staying[j] = weight_staying(row[j], 1.0 - own, r->survives[j]);
+        r->staying[n + j] = weight_staying(row[2 * n + j], 1.0 - other, r->survives[n + j]);
+        stays += row[j] - r->escaping[j];
+        by_nodes += r->staying[j] * (1.0 - r->survives[j]);
+    }
+    const double scale = by_nodes > 0.0 ? fmax(stays, 0.0) / by_nodes : 1.0;
+    for (int j = 0; j < n; j++) r->staying[j] *= scale;
+}
+
+/* All orders at the lanes of x: what leaves at once, what stays of rising nodes, what falling ones are worth.
+ */
+static void read_multiple(const interface *f, int s, const reader *r, const solution *x, lq_v8 *value) {
+    const int n = f->nodes, depths = f->level->depths.count;
+    lq_v8 sum = {0.0};
+    for (int side_of = 0; side_of < 2; side_of++) {
+        const int t = side_of == 0 ? s : 1 - s;
+        for (int j = 0; j < n; j++) {
+            lq_v8 rising = {0.0}, falling = {0.0};
+            for (int k = 0; k < depths; k++) {
+                const lq_v8 *e = x->value[t] + (size_t)(t == s ? k : depths - 1 - k) * 2 * (size_t)n;
+                rising += r->arrival[k] * e[j];
+                falling += r->arrival[k] * e[n + j];
+            }
+            const lq_v8 reward = x->reward[t * n + j];
+            const int at = side_of * n + j;
+            sum += r->escaping[at] * reward + r->staying[at] * (rising - r->survives[at] * reward);
+            sum += r->row[(2 * side_of + 1) * n + j] * falling;
+        }
+    }
+    *value = sum;
+}
+
+static void load_rewards(const interface *f, const lq_question *q, size_t first, size_t count, solution *x) {
+    const int n = f->nodes;
+    memset(x->reward, 0, 2 * (size_t)n * sizeof(lq_v8));
+    for (int j = 0; j < n; j++)
+        for (size_t l = 0; l < count; l++) {
+            const double tau = q->tau[first + l], mu = f->level->axis.mu[j];
+            x->reward[q->reward_side * n + j][l] = tau > 0.0 ? exp(log(tau) / mu) : 0.0;
+        }
+}
+
+static void answer_batch(const interface *f, const lq_question *q, const reader *readers, size_t first,
+                         size_t count, const solution *x) {
+    for (size_t m = 0; m < q->mu_count; m++) {
+        const reader *r = &readers[m];
+        lq_v8 value;
+        if (q->scattering == LQ_SINGLE) read_single(f, q->side, r->row, r->lambda, x, &value);
+        else read_multiple(f, q->side, r, x, &value);
+        for (size_t l = 0; l < count; l++)
+            q->answer[(first + l) * q->mu_count + m] = fmin(fmax(value[l], 0.0), 1.0);
+    }
+}
+
+static bool answer(const interface *f, const lq_question *q) {
+    reader *readers = malloc(q->mu_count * sizeof *readers);
+    solution x;
+    if (!readers || !solution_make(&x, f)) {
+        free(readers);
+        return false;
+    }
+    for (size_t m = 0; m < q->mu_count; m++) reader_make(&readers[m], f, q->side, q->mu[m]);
+    for (size_t first = 0; first < q->tau_count; first += LQ_LANES) {
+        const size_t left = q->tau_count - first, count = left < LQ_LANES ? left : LQ_LANES;
+        load_rewards(f, q, first, count, &x);
+        if (q->scattering == LQ_MULTIPLE) solve(f, &x);
+        answer_batch(f, q, readers, first, count, &x);
+    }
+    solution_free(&x);
+    free(readers);
+    return true;
+}
+
+/* ----------------------------------------------------------------------------- the smooth limit */
+
+/* alpha = 0, or eta = 1 where nothing happens at any roughness. */
+static void answer_smooth(double eta, const lq_question *q) {
+    const double index = q->side == 0 ? eta : 1.0 / eta;
+    for (size_t m = 0; m < q->mu_count; m++) {
+        double cos_t;
+        const double r = lq_fresnel_dielectric(q->mu[m], index, &cos_t);
+        const bool back = q->side == q->reward_side;
+        const double energy = back ? r : 1.0 - r, cosine = back ? q->mu[m] : cos_t;
+        for (size_t t = 0; t < q->tau_count; t++) {
+            const double tau = q->tau[t];
+            const double reward = tau == 1.0 ? 1.0 : tau > 0.0 && cosine > 0.0 ? exp(log(tau) / cosine) : 0.0;
+            q->answer[t * q->mu_count + m] = energy * reward;
+        }
+    }
+}
+
+lq_status lq_dielectric_answer(lq_rough *rough, double eta, int l, const lq_question *questions, size_t count,
+                               lq_error *error) {
+    if (rough->alpha < LQ_SMOOTH_ALPHA || eta == 1.0) {
+        for (size_t i = 0; i < count; i++) answer_smooth(eta, &questions[i]);
+        return LQ_OK;
+    }
+    const lq_rough_level *level = level_of(rough, eta, l);
+    interface f;
+    bool ok = level && interface_make(&f, rough, eta, level);
+    if (ok) {
+        for (size_t i = 0; ok && i < count; i++) ok = answer(&f, &questions[i]);
+        interface_free(&f);
+    }
+    return ok ? LQ_OK
+              : lq_fail(error, LQ_NO_MEMORY, "no memory to solve a dielectric at %d cosines",
+                        levels[l].nodes);
+}

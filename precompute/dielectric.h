@@ -1,0 +1,60 @@
+/* Both sides of a rough dielectric, all orders of scattering, without noise.
+ *
+ * Two media meet at a microsurface; side 0 is where the light of interest comes from, side 1 the other. Each
+ * side has its own frame with z away from the surface, in which the facets look the same and the other medium
+ * has the relative index eta_s: eta, or 1 / eta. Let E_s(u, omega) be what a ray at depth u (depth.h) that
+ * travels in omega on side s is worth in the end, given a reward for every direction in which it may leave
+ * either side, and C_s(u, omega) the same just before it meets a facet:
+ *
+ *     C_s(u, omega) = sum over facets of D_omega(m) [ F E_s(u, omega_r) + (1 - F) E_(1-s)(1 - u, omega_t) ]
+ *
+ * E follows from C by travel. The pair is collocated in depth and cosine and iterated: every pass adds one
+ * hit. The rows of the facet operator add up to 1, so that what leaves on one side and what leaves on the
+ * other add up to 1 to rounding at any resolution. At the cosines that are asked for, one more facet integral
+ * is taken (a Nystroem step): it carries the critical angle of the first hit exactly.
+ */
+#ifndef LACQUER_PRECOMPUTE_DIELECTRIC_H
+#define LACQUER_PRECOMPUTE_DIELECTRIC_H
+
+#include "lacquer.h"
+#include "microfacet/ndf.h"
+
+/* Cosines below this are taken for it, in two-sided scattering: light that enters exactly along the horizon
+ * meets the surface at its very top, and energies approach that limit only like mu^Lambda_o, over many
+ * decades of mu. */
+#define LQ_GRAZING 1e-6
+
+/* A question to both sides: what is light from `side` at each cosine worth, if leaving side s at cosine mu is
+ * rewarded with tau_s^(1/mu)? `reward_side` is the side that pays, the other pays nothing; `taus` as below.
+ */
+typedef struct lq_question {
+    int side;        /* 0 or 1: where the light comes from, at `mu` */
+    int reward_side; /* 0 or 1 */
+    lq_scattering scattering;
+    const double *mu;
+    size_t mu_count;
+    const double *tau; /* transmittances of the reward; {1} counts energy */
+    size_t tau_count;
+    double *answer; /* [t * mu_count + m] */
+} lq_question;
+
+enum { LQ_DIELECTRIC_LEVELS = 6 };
+
+/* What all interfaces of one roughness share: nodes, depths and travel, made when a level is first asked for.
+ */
+typedef struct lq_rough_level lq_rough_level;
+
+typedef struct lq_rough {
+    const lq_ndf *ndf;
+    double alpha;
+    lq_rough_level *levels[2][LQ_DIELECTRIC_LEVELS];
+} lq_rough;
+
+lq_rough lq_rough_start(const lq_ndf *ndf, double alpha);
+void lq_rough_free(lq_rough *rough);
+
+/* Answer `count` questions about one interface, eta = n_1 / n_0 > 0, at one level of resolution. */
+lq_status lq_dielectric_answer(lq_rough *rough, double eta, int level, const lq_question *questions,
+                               size_t count, lq_error *error);
+
+#endif
