@@ -30,7 +30,13 @@ struct lq_rough_level {
     lq_facet_rule rule;
     double *travel_down, *travel_up; /* [(i * depths + from) * depths + at] */
     double *survival;                /* [depth * nodes + j]: u^Lambda */
+    /* Where rewards are read: tau^(1/mu) has an essential singularity at grazing, which costs nodes, but only
+     * in what leaves after the first hit, outside the iteration. */
+    lq_node_axis fine;
+    double fine_lambda[LQ_NODES_MAX];
 };
+
+enum { FINE = 48 };
 
 /* One side: the relative index of the other, where its reflectance kinks, and its facet operators: row i of a
  * falling (rising) ray over the 4 n directions it may be sent to: own side rising, own side falling, other
@@ -61,6 +67,7 @@ static void interface_free(interface *f) {
 static void level_free(lq_rough_level *r) {
     if (!r) return;
     lq_node_axis_free(&r->axis);
+    lq_node_axis_free(&r->fine);
     free(r->travel_down);
     free(r->travel_up);
     free(r->survival);
@@ -90,11 +97,13 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolut
     r->survival = lq_zeros(n * d);
     const bool axis = linear ? lq_node_axis_make_linear(&r->axis, alpha, LQ_RISING, l->nodes)
                              : lq_node_axis_make(&r->axis, alpha, LQ_RISING, l->nodes, 0.0);
-    if (!axis || !r->travel_down || !r->travel_up || !r->survival) {
+    const bool fine = lq_node_axis_make(&r->fine, alpha, LQ_RISING, FINE, 0.0);
+    if (!axis || !fine || !r->travel_down || !r->travel_up || !r->survival) {
         level_free(r);
         return NULL;
     }
     for (int i = 0; i < l->nodes; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
+    for (int i = 0; i < FINE; i++) r->fine_lambda[i] = lq_lambda(ndf, alpha, r->fine.mu[i]);
     fill_travel(r);
     return r;
 }
@@ -136,7 +145,9 @@ typedef struct scatter {
      * each facet. */
     const lq_ndf *ndf;
     double alpha, mu, area;
-    double *escaping; /* [nodes], or NULL */
+    const lq_node_axis *fine;
+    double *escaping; /* [FINE], or NULL */
+    double *through;  /* [FINE]: likewise, all that is refracted away from the surface */
 } scatter;
 
 static void add_images(scatter *s, const lq_fan *fan, double factor, double *up, double *down,
@@ -157,7 +168,7 @@ static void add_escaping(scatter *s, const lq_fan *fan, double factor) {
         const double lit = s->area * fan->mirror[i], sum = lit + area[i] * s->mu;
         weight[i] = sum > 0.0 ? factor * fan->weight[i] * lit / sum : 0.0;
     }
-    lq_node_axis_moments(s->axis, s->kernels, rising, fan->mirror, weight, s->escaping);
+    lq_node_axis_moments(s->fine, s->kernels, rising, fan->mirror, weight, s->escaping);
 }
 
 static void add_reflection(void *user, const lq_fan *fan) {
@@ -170,35 +181,55 @@ static void add_reflection(void *user, const lq_fan *fan) {
 static void add_refraction(void *user, const lq_fan *fan) {
     scatter *s = user;
     const double f = lq_fresnel_dielectric(fan->cos_d, s->eta, NULL);
+    if (s->through) {
+        double weight[LQ_FAN_MAX];
+        for (int i = 0; i < fan->up; i++) weight[i] = (1.0 - f) * fan->weight[i];
+        lq_node_axis_moments(s->fine, s->kernels, (size_t)fan->up, fan->mirror, weight, s->through);
+    }
     add_images(s, fan, 1.0 - f, s->moments + 2 * s->nodes, s->moments + 3 * s->nodes, &s->refracted);
 }
 
-/* The row of direction v_z on side `s`: weights on the nodes of both sides that add up to 1. `escaping` (may
- * be NULL) gets the part of the own side's rising weights that leaves at once. */
-static void facet_row(const interface *f, int s, double v_z, double *row, double *escaping) {
+/* Light that leaves a ray from outside, on the fine nodes: reflected and not masked, and refracted, masked or
+ * not. */
+typedef struct direct {
+    double escaping[FINE], through[FINE];
+} direct;
+
+/* The row of direction v_z on side `s`: weights on the nodes of both sides that add up to 1, and the first
+ * hit's direct light where it is asked for. */
+static void facet_row(const interface *f, int s, double v_z, double *row, direct *first) {
     const side *own = &f->sides[s];
     const lq_node_axis *axis = &f->level->axis;
     const lq_facet_rule *rule = &f->level->rule;
     const int n = f->nodes;
-    double moments[4 * LQ_NODES_MAX] = {0.0}, at_once[LQ_NODES_MAX] = {0.0};
+    double moments[4 * LQ_NODES_MAX] = {0.0};
+    direct at_once = {{0.0}, {0.0}};
     const double sine = lq_sine(fabs(v_z));
     scatter k = {.kernels = lq_solver_kernels_get(), .eta = own->eta, .axis = axis};
     k.moments = moments;
     k.nodes = n;
-    if (escaping) {
+    if (first) {
         k.ndf = f->ndf;
         k.alpha = f->alpha;
         k.mu = v_z;
         k.area = lq_area_above(f->ndf, f->alpha, v_z, sine);
-        k.escaping = at_once;
+        k.fine = &f->level->fine;
+        k.escaping = at_once.escaping;
+        k.through = at_once.through;
     }
     lq_facets_visit(f->ndf, f->alpha, v_z, sine, rule, &own->kinks, add_reflection, &k);
     lq_facets_visit_refracted(f->ndf, f->alpha, own->eta, v_z, sine, rule, &own->kinks, add_refraction, &k);
     const double scale = 1.0 / (k.reflected + k.refracted);
     for (int m = 0; m < 4 * n; m++) moments[m] *= scale;
-    for (int m = 0; m < n; m++) at_once[m] *= scale;
+    for (int m = 0; m < FINE; m++) {
+        at_once.escaping[m] *= scale;
+        at_once.through[m] *= scale;
+    }
     for (int part = 0; part < 4; part++) lq_node_axis_project(axis, moments + part * n, row + part * n);
-    if (escaping) lq_node_axis_project(axis, at_once, escaping);
+    if (first) {
+        lq_node_axis_project(&f->level->fine, at_once.escaping, first->escaping);
+        lq_node_axis_project(&f->level->fine, at_once.through, first->through);
+    }
 }
 
 /* ----------------------------------------------------------------------------- operators */
@@ -229,14 +260,19 @@ static bool interface_make(interface *f, const lq_rough *rough, double eta, cons
 /* One batch of rewards, a lane each. */
 typedef struct solution {
     lq_v8 *reward;    /* [side * nodes + j], of the rising nodes */
+    lq_v8 *fine;      /* [side * FINE + j], of the fine ones */
     lq_v8 *value[2];  /* E: [depth * 2 nodes + (rising, falling)] */
     lq_v8 *before[2]; /* C: likewise */
 } solution;
 
 static bool solution_make(solution *x, const interface *f) {
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
-    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes) * LQ_LANES);
-    *x = (solution){all + 4 * size, {all, all + size}, {all + 2 * size, all + 3 * size}};
+    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes + 2 * FINE) * LQ_LANES);
+    *x = (solution){.reward = all + 4 * size, .fine = all + 4 * size + 2 * (size_t)f->nodes};
+    for (int s = 0; s < 2; s++) {
+        x->value[s] = all + (size_t)s * size;
+        x->before[s] = all + (size_t)(2 + s) * size;
+    }
     return all;
 }
 
@@ -258,14 +294,17 @@ static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
                           .reward = x->reward + s * f->nodes};
 }
 
+/* Passes count hits: a few dozen where the media differ, thousands where they nearly match. */
 enum { PASSES_MAX = 20000 };
 
-static void solve(const interface *f, solution *x) {
+/* False where the iteration grows instead: rays that graze a fine level meet hundreds of facets, and its
+ * interpolation can overshoot by enough to matter then. A coarser level holds. */
+static bool solve(const interface *f, solution *x) {
     const lq_solver_kernels *kernels = lq_solver_kernels_get();
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
     for (int s = 0; s < 2; s++) memset(x->before[s], 0, size * sizeof(lq_v8));
     double change = 1.0;
-    for (int pass = 0; pass < PASSES_MAX && change > 1e-9; pass++) {
+    for (int pass = 0; pass < PASSES_MAX && change > 1e-10 && change < 10.0; pass++) {
         change = 0.0;
         for (int s = 0; s < 2; s++) {
             const lq_two_sided k = kernel_of(f, x, s);
@@ -276,6 +315,7 @@ static void solve(const interface *f, solution *x) {
             kernels->meet(&k);
         }
     }
+    return change <= 1e-7;
 }
 
 /* -------------------------------------------------------------------------------- readout */
@@ -288,20 +328,6 @@ static double refracted_escape(double lambda_i, double lambda_o) {
            exp(lgamma(1.0 + lambda_i) + lgamma(1.0 + lambda_o) - lgamma(2.0 + lambda_i + lambda_o));
 }
 
-/* Direct rewards of the first hit only: both escapes in closed form. */
-static void read_single(const interface *f, int s, const double *row, double lambda, const solution *x,
-                        lq_v8 *value) {
-    const int n = f->nodes;
-    lq_v8 sum = {0.0};
-    for (int j = 0; j < n; j++) {
-        const double own = f->level->lambda[j], other = f->level->lambda[j];
-        const double back = isinf(lambda) ? 1.0 : (1.0 + lambda) / (1.0 + lambda + own);
-        sum += row[j] * back * x->reward[s * n + j];
-        sum += row[2 * n + j] * refracted_escape(lambda, other) * x->reward[(1 - s) * n + j];
-    }
-    *value = sum;
-}
-
 /* What a reader needs at one cosine, kept while the batches pass. Near grazing the first facet is met at the
  * very top, where powers of the depth are all but steps that no collocation sees. Of the light that a rising
  * node gets, the part that leaves at once is therefore known in closed form, and the value of the rest,
@@ -310,7 +336,7 @@ typedef struct reader {
     double lambda;
     double arrival[LQ_DEPTHS_MAX]; /* where a ray from outside meets its first facet */
     double row[4 * LQ_NODES_MAX];
-    double escaping[2 * LQ_NODES_MAX]; /* of rising nodes, own side then other: leaves at once */
+    double escaping[2 * FINE];         /* leaves at once, on the fine nodes: own side, then other */
     double survives[2 * LQ_NODES_MAX]; /* the same per unit of light, as the depths see it */
     double staying[2 * LQ_NODES_MAX];  /* weight of E minus the reward of what survives */
 } reader;
@@ -333,37 +359,66 @@ static double weight_staying(double light, double share, double seen) {
     return seen < 1.0 - 1e-9 ? light * share / (1.0 - seen) : light;
 }
 
+/* Where next to nothing stays, the quotient of the two is rounding. */
+static double staying_scale(double stays, double by_nodes) {
+    return by_nodes > 1e-4 ? fmax(fmin(stays / by_nodes, 2.0), 0.0) : 1.0;
+}
+
+static void settle_sum(reader *r, int n) {
+    double sum = 0.0, direct_light = 0.0;
+    for (int j = 0; j < 2 * FINE; j++) direct_light += r->escaping[j];
+    for (int j = 0; j < 2 * n; j++) sum += r->staying[j] * (1.0 - r->survives[j]);
+    for (int j = 0; j < n; j++) sum += r->row[n + j] + r->row[3 * n + j];
+    const double scale = direct_light > 1e-6 ? (1.0 - sum) / direct_light : 1.0;
+    for (int j = 0; j < 2 * FINE; j++) r->escaping[j] *= scale;
+}
+
 static void reader_make(reader *r, const interface *f, int s, double mu) {
     const int n = f->nodes;
     /* At mu = 0 itself the limit is approached only like mu^Lambda_o, slower than any table resolves. */
     const double cosine = fmax(mu, LQ_GRAZING);
     r->lambda = lq_lambda(f->ndf, f->alpha, cosine);
     lq_travel_down(&f->level->depths, r->lambda, 1.0, r->arrival);
-    facet_row(f, s, cosine, r->row, r->escaping);
-    double stays = 0.0, by_nodes = 0.0; /* reflected upwards, but not out: by facets, and by nodes */
-    for (int j = 0; j < n; j++) {
-        const double *row = r->row;
-        const double lambda = f->level->lambda[j];
-        const double own = reflected_escape(r->lambda, lambda), other = refracted_escape(r->lambda, lambda);
-        r->survives[j] = mean_survival(f, r, j, true);
-        r->survives[n + j] = mean_survival(f, r, j, false);
-        r->escaping[n + j] = row[2 * n + j] * other;
-        r->staying[j] = weight_staying(row[j], 1.0 - own, r->survives[j]);
-        r->staying[n + j] = weight_staying(row[2 * n + j], 1.0 - other, r->survives[n + j]);
-        stays += row[j] - r->escaping[j];
-        by_nodes += r->staying[j] * (1.0 - r->survives[j]);
+    direct first;
+    facet_row(f, s, cosine, r->row, &first);
+    double stays[2] = {0.0, 0.0}, by_nodes[2] = {0.0, 0.0}; /* rising, but not out: by facets, and by nodes */
+    for (int j = 0; j < FINE; j++) {
+        r->escaping[j] = first.escaping[j];
+        r->escaping[FINE + j] = first.through[j] * refracted_escape(r->lambda, f->level->fine_lambda[j]);
+        stays[0] -= r->escaping[j];
+        stays[1] -= r->escaping[FINE + j];
     }
-    const double scale = by_nodes > 0.0 ? fmax(stays, 0.0) / by_nodes : 1.0;
-    for (int j = 0; j < n; j++) r->staying[j] *= scale;
+    for (int j = 0; j < 2 * n; j++) {
+        const int way = j / n;
+        const double lambda = f->level->lambda[j % n], light = r->row[2 * way * n + j % n];
+        const double leaves =
+            way == 0 ? reflected_escape(r->lambda, lambda) : refracted_escape(r->lambda, lambda);
+        r->survives[j] = mean_survival(f, r, j % n, way == 0);
+        r->staying[j] = weight_staying(light, 1.0 - leaves, r->survives[j]);
+        stays[way] += light;
+        by_nodes[way] += r->staying[j] * (1.0 - r->survives[j]);
+    }
+    for (int j = 0; j < 2 * n; j++) r->staying[j] *= staying_scale(stays[j / n], by_nodes[j / n]);
+    /* What the scales could not mend goes to what leaves at once, so that all adds up to 1. */
+    settle_sum(r, n);
+}
+
+/* What leaves at once is worth: all there is in single scattering. */
+static void read_direct(int s, const reader *r, const solution *x, lq_v8 *value) {
+    lq_v8 sum = {0.0};
+    for (int j = 0; j < FINE; j++)
+        sum += r->escaping[j] * x->fine[s * FINE + j] + r->escaping[FINE + j] * x->fine[(1 - s) * FINE + j];
+    *value = sum;
 }
 
 /* All orders at the lanes of x: what leaves at once, what stays of rising nodes, what falling ones are worth.
  */
 static void read_multiple(const interface *f, int s, const reader *r, const solution *x, lq_v8 *value) {
     const int n = f->nodes, depths = f->level->depths.count;
-    lq_v8 sum = {0.0};
-    for (int side_of = 0; side_of < 2; side_of++) {
-        const int t = side_of == 0 ? s : 1 - s;
+    lq_v8 sum;
+    read_direct(s, r, x, &sum);
+    for (int way = 0; way < 2; way++) {
+        const int t = way == 0 ? s : 1 - s;
         for (int j = 0; j < n; j++) {
             lq_v8 rising = {0.0}, falling = {0.0};
             for (int k = 0; k < depths; k++) {
@@ -371,23 +426,28 @@ static void read_multiple(const interface *f, int s, const reader *r, const solu
                 rising += r->arrival[k] * e[j];
                 falling += r->arrival[k] * e[n + j];
             }
-            const lq_v8 reward = x->reward[t * n + j];
-            const int at = side_of * n + j;
-            sum += r->escaping[at] * reward + r->staying[at] * (rising - r->survives[at] * reward);
-            sum += r->row[(2 * side_of + 1) * n + j] * falling;
+            const int at = way * n + j;
+            sum += r->staying[at] * (rising - r->survives[at] * x->reward[t * n + j]);
+            sum += r->row[(2 * way + 1) * n + j] * falling;
         }
     }
     *value = sum;
 }
 
+static double reward_of(double tau, double mu) {
+    return tau == 1.0 ? 1.0 : tau > 0.0 ? exp(log(tau) / mu) : 0.0;
+}
+
 static void load_rewards(const interface *f, const lq_question *q, size_t first, size_t count, solution *x) {
     const int n = f->nodes;
-    memset(x->reward, 0, 2 * (size_t)n * sizeof(lq_v8));
-    for (int j = 0; j < n; j++)
-        for (size_t l = 0; l < count; l++) {
-            const double tau = q->tau[first + l], mu = f->level->axis.mu[j];
-            x->reward[q->reward_side * n + j][l] = tau > 0.0 ? exp(log(tau) / mu) : 0.0;
-        }
+    memset(x->reward, 0, (2 * (size_t)n + 2 * FINE) * sizeof(lq_v8));
+    for (size_t l = 0; l < count; l++) {
+        const double tau = q->tau[first + l];
+        for (int j = 0; j < n; j++)
+            x->reward[q->reward_side * n + j][l] = reward_of(tau, f->level->axis.mu[j]);
+        for (int j = 0; j < FINE; j++)
+            x->fine[q->reward_side * FINE + j][l] = reward_of(tau, f->level->fine.mu[j]);
+    }
 }
 
 static void answer_batch(const interface *f, const lq_question *q, const reader *readers, size_t first,
@@ -395,30 +455,31 @@ static void answer_batch(const interface *f, const lq_question *q, const reader 
     for (size_t m = 0; m < q->mu_count; m++) {
         const reader *r = &readers[m];
         lq_v8 value;
-        if (q->scattering == LQ_SINGLE) read_single(f, q->side, r->row, r->lambda, x, &value);
+        if (q->scattering == LQ_SINGLE) read_direct(q->side, r, x, &value);
         else read_multiple(f, q->side, r, x, &value);
         for (size_t l = 0; l < count; l++)
             q->answer[(first + l) * q->mu_count + m] = fmin(fmax(value[l], 0.0), 1.0);
     }
 }
 
-static bool answer(const interface *f, const lq_question *q) {
+static lq_status answer(const interface *f, const lq_question *q) {
     reader *readers = malloc(q->mu_count * sizeof *readers);
     solution x;
+    lq_status status = LQ_OK;
     if (!readers || !solution_make(&x, f)) {
         free(readers);
-        return false;
+        return LQ_NO_MEMORY;
     }
     for (size_t m = 0; m < q->mu_count; m++) reader_make(&readers[m], f, q->side, q->mu[m]);
     for (size_t first = 0; first < q->tau_count; first += LQ_LANES) {
         const size_t left = q->tau_count - first, count = left < LQ_LANES ? left : LQ_LANES;
         load_rewards(f, q, first, count, &x);
-        if (q->scattering == LQ_MULTIPLE) solve(f, &x);
+        if (q->scattering == LQ_MULTIPLE && !solve(f, &x)) status = LQ_NOT_CONVERGED;
         answer_batch(f, q, readers, first, count, &x);
     }
     solution_free(&x);
     free(readers);
-    return true;
+    return status;
 }
 
 /* ----------------------------------------------------------------------------- the smooth limit */
@@ -433,26 +494,32 @@ static void answer_smooth(double eta, const lq_question *q) {
         const double energy = back ? r : 1.0 - r, cosine = back ? q->mu[m] : cos_t;
         for (size_t t = 0; t < q->tau_count; t++) {
             const double tau = q->tau[t];
-            const double reward = tau == 1.0 ? 1.0 : tau > 0.0 && cosine > 0.0 ? exp(log(tau) / cosine) : 0.0;
+            const double reward = cosine > 0.0 ? reward_of(tau, cosine) : tau == 1.0;
             q->answer[t * q->mu_count + m] = energy * reward;
         }
     }
 }
 
+bool lq_dielectric_is_closed(const lq_rough *rough, double eta) {
+    return rough->alpha < LQ_SMOOTH_ALPHA || fabs(eta - 1.0) < LQ_MATCHED;
+}
+
 lq_status lq_dielectric_answer(lq_rough *rough, double eta, int l, const lq_question *questions, size_t count,
                                lq_error *error) {
-    if (rough->alpha < LQ_SMOOTH_ALPHA || eta == 1.0) {
+    if (lq_dielectric_is_closed(rough, eta)) {
         for (size_t i = 0; i < count; i++) answer_smooth(eta, &questions[i]);
         return LQ_OK;
     }
-    const lq_rough_level *level = level_of(rough, eta, l);
+    const lq_rough_level *shared = level_of(rough, eta, l);
     interface f;
-    bool ok = level && interface_make(&f, rough, eta, level);
-    if (ok) {
-        for (size_t i = 0; ok && i < count; i++) ok = answer(&f, &questions[i]);
+    lq_status status = shared && interface_make(&f, rough, eta, shared) ? LQ_OK : LQ_NO_MEMORY;
+    if (status == LQ_OK) {
+        for (size_t i = 0; status == LQ_OK && i < count; i++) status = answer(&f, &questions[i]);
         interface_free(&f);
     }
-    return ok ? LQ_OK
-              : lq_fail(error, LQ_NO_MEMORY, "no memory to solve a dielectric at %d cosines",
-                        levels[l].nodes);
+    if (status == LQ_NO_MEMORY)
+        lq_fail(error, status, "no memory to solve a dielectric at %d cosines", levels[l].nodes);
+    return status == LQ_NOT_CONVERGED
+               ? lq_fail(error, status, "the iteration at %d cosines did not settle", levels[l].nodes)
+               : status;
 }

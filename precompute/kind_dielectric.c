@@ -24,22 +24,24 @@ typedef lq_status level_values(lq_rough *rough, double eta, int level, const voi
                                lq_error *error);
 
 /* Raise the level until two in a row agree: the estimate is twice their largest difference over `count`
- * values, and never below a tenth of the tolerance. `values` gets the finer ones. */
+ * values, and never below a tenth of the tolerance. `values` gets the finer ones. A level that does not
+ * settle is left out. */
 static lq_status refine(lq_rough *rough, double eta, double tolerance, level_values *evaluate,
                         const void *asked, size_t count, double *values, double *estimate, lq_error *error) {
-    double *before = malloc(count * sizeof *before);
-    if (!before) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", count);
+    double *now = malloc(count * sizeof *now);
+    if (!now) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", count);
     lq_status status = LQ_OK;
-    *estimate = INFINITY;
+    *estimate = 1.0;
     for (int level = 0; status == LQ_OK && level<LQ_DIELECTRIC_LEVELS && * estimate> tolerance; level++) {
-        if (level > 0) memcpy(before, values, count * sizeof *before);
-        status = evaluate(rough, eta, level, asked, values, error);
+        status = evaluate(rough, eta, level, asked, now, error);
+        if (status != LQ_OK) break;
         double change = 0.0;
-        for (size_t i = 0; level > 0 && i < count; i++) change = fmax(change, fabs(values[i] - before[i]));
+        for (size_t i = 0; level > 0 && i < count; i++) change = fmax(change, fabs(now[i] - values[i]));
         if (level > 0) *estimate = fmax(2.0 * change, 0.1 * tolerance);
+        memcpy(values, now, count * sizeof *now);
     }
-    free(before);
-    return status;
+    free(now);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }
 
 /* The estimate of a smooth interface, whose energies are exact at alpha = 0 and off by what masking and the
@@ -106,6 +108,13 @@ typedef struct directional {
 static lq_status directional_values(lq_rough *rough, double eta, int level, const void *asked, double *values,
                                     lq_error *error) {
     const directional *d = asked;
+    if (lq_dielectric_is_closed(rough, eta)) {
+        /* tau^(1/mu) straight through matched media is all but a step at grazing: no interpolation holds it.
+         */
+        const lq_question q = {0,           d->reward_side, d->scattering, d->mu,
+                               d->mu_count, d->tau,         d->tau_count,  values};
+        return lq_dielectric_answer(rough, eta, level, &q, 1, error);
+    }
     const tau_nodes nodes = choose_taus(d->tau, d->tau_count, level);
     double *answer = malloc(nodes.count * d->mu_count * sizeof *answer);
     if (!answer) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", d->mu_count);

@@ -8,6 +8,9 @@
 
 #define MU_AXIS                                                                                              \
     { "mu", "cosine of incidence", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
+/* Two-sided scattering: precompute/dielectric.h says why. */
+#define MU_AXIS_TWO_SIDED                                                                                    \
+    { "mu", "cosine of incidence; below 1e-4 it is taken for 1e-4", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 #define ALPHA_AXIS                                                                                           \
     { "alpha", "roughness, the GGX slope scale", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 
@@ -125,7 +128,7 @@ static const lq_kind kinds[] = {
         .source = "B18 sec. 4.1; H16",
         .interface = "dielectric",
         .axis_count = 3,
-        .axes = {MU_AXIS,
+        .axes = {MU_AXIS_TWO_SIDED,
                  ALPHA_AXIS,
                  {"eta", "relative index n_below / n_above, seen from the light", 0.1, 10.0, 0.25, 4.0, 64,
                   LQ_MAP_LINEAR}},
@@ -144,7 +147,7 @@ static const lq_kind kinds[] = {
         .source = "D22 sec. 3.1 and 4",
         .interface = "dielectric",
         .axis_count = 4,
-        .axes = {MU_AXIS,
+        .axes = {MU_AXIS_TWO_SIDED,
                  ALPHA_AXIS,
                  {"eta", "relative index n_below / n_above, seen from the light", 0.1, 10.0, 0.4, 2.5, 64,
                   LQ_MAP_LINEAR},

@@ -61,6 +61,23 @@ for kind in albedo albedo-average dfg; do
     says '"z_limit"'
 done
 
+# both sides of a dielectric, grazing and smooth ends included
+rough=(--axis alpha=0,0.01,0.3,1 --axis eta=0.6,1,1.5)
+looked_up=(--axis mu=0,0.1,0.5,1 "${rough[@]}")
+absorbing=(--axis tau=0,0.5,1)
+loose=(--tolerance 5e-4)
+run 0 precompute fgd-dielectric "${looked_up[@]}" "${loose[@]}" -o fgd-dielectric.exr
+run 0 precompute transmission "${looked_up[@]}" "${absorbing[@]}" "${loose[@]}" -o transmission.exr
+run 0 precompute diffuse-transmission "${rough[@]}" "${absorbing[@]}" "${loose[@]}" -o diffuse-transmission.exr
+run 0 precompute diffuse-reflection "${rough[@]}" "${absorbing[@]}" "${loose[@]}" -o diffuse-reflection.exr
+run 0 precompute variance "${rough[@]}" "${loose[@]}" -o variance.exr
+for kind in fgd-dielectric transmission diffuse-transmission diffuse-reflection variance; do
+    run 0 validate $kind.exr --against walk --points 24 --samples 10000
+    says '^exact - walk +[0-9]'
+done
+run 0 precompute fgd-dielectric --scattering single "${looked_up[@]}" -o once.exr
+run 0 validate once.exr --against walk --points 12 --samples 10000
+
 # --------------------------------------------------------------------------------- tables that are not
 # the linear interpolation of a coarse table is far above any budget
 run 2 validate fgd.exr --points 20 --budget 1e-6

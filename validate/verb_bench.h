@@ -26,7 +26,7 @@ typedef struct bench_job {
     bool full;
     int threads;
     lq_axis axes[LQ_MAX_AXES];
-    double reference_tolerance;
+    double reference_tolerance, reference_error; /* asked for; the largest estimate that came back */
     bench_row rows[BENCH_MAX_ROWS];
     size_t row_count;
 } bench_job;

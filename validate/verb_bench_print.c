@@ -43,6 +43,8 @@ static const char *method(const bench_row *row) {
 static void print_ratio(const bench_job *job, double error) {
     const double walk = bench_walk_cost(job, error), solver = bench_solver_cost(job, error);
     if (isnan(solver)) printf("rms error %.0e: the solver stays above it\n", error);
+    else if (isnan(walk))
+        printf("rms error %.0e: solver %.2g s per entry; no walk is known\n", error, solver);
     else
         printf("rms error %.0e: solver %.2g s, walk %.2g s per entry: %.2g times faster\n", error, solver,
                walk, walk / solver);

@@ -1,6 +1,7 @@
 /* Table kinds as random walks: one short function a kind. */
 #include "validate/walk_kind.h"
 
+#include "microfacet/lobe.h"
 #include "tables/status.h"
 #include "validate/walk_lobe.h"
 
@@ -52,6 +53,84 @@ static lq_status walk_tir_loss(lq_walk *walk, const lq_settings *settings, lq_wa
     return lq_walk_lobe(walk, LQ_WALK_LOST, values, error);
 }
 
+/* Two-sided scattering takes cosines below this for it: light that enters exactly along the horizon meets the
+ * surface at its very top, and energies approach that limit only over many decades of mu. */
+static const double grazing = 1e-6;
+
+/* Both sides at the cosine looked up, or for the light of a diffuse base where walk->cosine says so. */
+static lq_status walk_sides(lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
+    walk->fresnel = LQ_WALK_DIELECTRIC;
+    if (walk->alpha > 0.0) walk->mu = fmax(walk->mu, grazing);
+    return lq_walk_two_sided(walk, sides, error);
+}
+
+/* Of one hit: what is reflected. The walk knows no single refraction. */
+static lq_status walk_fgd_dielectric(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                                     lq_error *error) {
+    if (settings->scattering == LQ_SINGLE) {
+        walk->fresnel = LQ_WALK_DIELECTRIC;
+        return lq_walk_single(walk, LQ_CORRELATED, values, error);
+    }
+    lq_walk_sides sides;
+    const lq_status status = walk_sides(walk, &sides, error);
+    if (status == LQ_OK) values[0] = sides.reflected;
+    return status;
+}
+
+static lq_status walk_transmission(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                                   lq_error *error) {
+    if (settings->scattering == LQ_SINGLE)
+        return lq_fail(error, LQ_BAD_INPUT, "no random walk is known for single scattering in transmission");
+    lq_walk_sides sides;
+    const lq_status status = walk_sides(walk, &sides, error);
+    if (status == LQ_OK) values[0] = sides.transmitted;
+    return status;
+}
+
+/* Light of the base goes up through the coating first: the coating is its near side. */
+static lq_status walk_base(lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
+    walk->cosine = true;
+    walk->n = 1.0 / walk->n;
+    walk->tau_near = walk->tau_far;
+    walk->tau_far = 1.0;
+    return walk_sides(walk, sides, error);
+}
+
+static lq_status walk_diffuse_transmission(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                                           lq_error *error) {
+    (void)settings;
+    lq_walk_sides sides;
+    const lq_status status = walk_base(walk, &sides, error);
+    if (status == LQ_OK) values[0] = sides.transmitted;
+    return status;
+}
+
+static lq_status walk_diffuse_reflection(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                                         lq_error *error) {
+    (void)settings;
+    lq_walk_sides sides;
+    const lq_status status = walk_base(walk, &sides, error);
+    if (status == LQ_OK) values[0] = sides.reflected;
+    return status;
+}
+
+/* The second channel is a function of the first; its error goes by the slope of that. */
+static lq_status walk_variance(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                               lq_error *error) {
+    (void)settings;
+    lq_walk_sides sides;
+    const lq_status status = walk_base(walk, &sides, error);
+    if (status != LQ_OK) return status;
+    const lq_walk_mean spread = sides.transmitted_sin2;
+    const double step = 1e-4;
+    const double slope = (lq_lobe_roughness(walk->ndf, spread.mean + step) -
+                          lq_lobe_roughness(walk->ndf, spread.mean - step)) /
+                         (2.0 * step);
+    values[0] = spread;
+    values[1] = (lq_walk_mean){lq_lobe_roughness(walk->ndf, spread.mean), slope * spread.error};
+    return status;
+}
+
 static const struct {
     const char *id;
     lq_status (*run)(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values, lq_error *error);
@@ -62,6 +141,11 @@ static const struct {
     {"dfg", walk_dfg},
     {"tir-pass", walk_tir_pass},
     {"tir-loss", walk_tir_loss},
+    {"fgd-dielectric", walk_fgd_dielectric},
+    {"transmission", walk_transmission},
+    {"diffuse-transmission", walk_diffuse_transmission},
+    {"diffuse-reflection", walk_diffuse_reflection},
+    {"variance", walk_variance},
 };
 
 enum { WALKS = sizeof walks / sizeof walks[0] };
@@ -87,6 +171,7 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     walk.alpha = coordinate(kind, point, "alpha", 0.0);
     walk.n = coordinate(kind, point, "n", coordinate(kind, point, "eta", 1.0));
     walk.kappa = coordinate(kind, point, "kappa", 0.0);
+    walk.tau_far = coordinate(kind, point, "tau", 1.0);
     walk.samples = run->samples;
     walk.seed = run->seed;
     walk.purpose = run->purpose;
