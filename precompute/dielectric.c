@@ -304,7 +304,7 @@ static bool solve(const interface *f, solution *x) {
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
     for (int s = 0; s < 2; s++) memset(x->before[s], 0, size * sizeof(lq_v8));
     double change = 1.0;
-    for (int pass = 0; pass < PASSES_MAX && change > 1e-10 && change < 10.0; pass++) {
+    for (int pass = 0; pass < PASSES_MAX && change > 1e-13 && change < 10.0; pass++) {
         change = 0.0;
         for (int s = 0; s < 2; s++) {
             const lq_two_sided k = kernel_of(f, x, s);
@@ -415,20 +415,16 @@ static void read_direct(int s, const reader *r, const solution *x, lq_v8 *value)
  */
 static void read_multiple(const interface *f, int s, const reader *r, const solution *x, lq_v8 *value) {
     const int n = f->nodes, depths = f->level->depths.count;
-    lq_v8 sum;
+    const lq_solver_kernels *kernels = lq_solver_kernels_get();
+    lq_v8 sum, mean[2 * LQ_NODES_MAX];
     read_direct(s, r, x, &sum);
     for (int way = 0; way < 2; way++) {
         const int t = way == 0 ? s : 1 - s;
+        kernels->average(depths, 2 * n, r->arrival, t != s, x->value[t], mean);
         for (int j = 0; j < n; j++) {
-            lq_v8 rising = {0.0}, falling = {0.0};
-            for (int k = 0; k < depths; k++) {
-                const lq_v8 *e = x->value[t] + (size_t)(t == s ? k : depths - 1 - k) * 2 * (size_t)n;
-                rising += r->arrival[k] * e[j];
-                falling += r->arrival[k] * e[n + j];
-            }
             const int at = way * n + j;
-            sum += r->staying[at] * (rising - r->survives[at] * x->reward[t * n + j]);
-            sum += r->row[(2 * way + 1) * n + j] * falling;
+            sum += r->staying[at] * (mean[j] - r->survives[at] * x->reward[t * n + j]);
+            sum += r->row[(2 * way + 1) * n + j] * mean[n + j];
         }
     }
     *value = sum;

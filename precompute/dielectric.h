@@ -21,9 +21,10 @@
 
 #include <stdbool.h>
 
-/* Cosines below this are taken for it, in two-sided scattering. Light that enters along the horizon meets the surface
- * at its very top, and what is refracted there leaves again with a chance that goes like mu^Lambda_o: energies
- * drift by up to 1.5e-3 between 1e-4 and 0, over more decades than a table or a collocation in depth holds. */
+/* Cosines below this are taken for it, in two-sided scattering. Light that enters along the horizon meets the
+ * surface at its very top, and what is refracted there leaves again with a chance that goes like mu^Lambda_o:
+ * energies drift by up to 1.5e-3 between 1e-4 and 0, over more decades than a table or a collocation in depth
+ * holds. */
 #define LQ_GRAZING 1e-4
 
 /* Relative indices this close to 1 are 1: an axis that ought to hit it does so to rounding only. */
@@ -61,8 +62,9 @@ void lq_rough_free(lq_rough *rough);
 /* Is the answer known in closed form: smooth, or matched media? */
 bool lq_dielectric_is_closed(const lq_rough *rough, double eta);
 
-/* Answer `count` questions about one interface, eta = n_1 / n_0 > 0, at one level of resolution. LQ_NOT_CONVERGED: this
- * level is too fine for so grazing rays, and its answers are void; coarser ones hold. */
+/* Answer `count` questions about one interface, eta = n_1 / n_0 > 0, at one level of resolution.
+ * LQ_NOT_CONVERGED: this level is too fine for so grazing rays, and its answers are void; coarser ones hold.
+ */
 lq_status lq_dielectric_answer(lq_rough *rough, double eta, int level, const lq_question *questions,
                                size_t count, lq_error *error);
 

@@ -76,6 +76,9 @@ typedef struct lq_solver_kernels {
      */
     double (*travel)(const lq_two_sided *s, const double *survival);
     void (*meet)(const lq_two_sided *s);
+    /* out[q] = sum_k arrival[k] e[k * directions + q], or with the depths backwards. */
+    void (*average)(int depths, int directions, const double *arrival, int backwards, const lq_v8 *e,
+                    lq_v8 *out);
     void (*read)(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio, lq_v8 *energy);
 } lq_solver_kernels;
 

@@ -304,8 +304,18 @@ static void meet(const lq_two_sided *s) {
     }
 }
 
+static void average(int depths, int directions, const double *restrict arrival, int backwards,
+                    const lq_v8 *restrict e, lq_v8 *restrict out) {
+    memset(out, 0, (size_t)directions * sizeof *out);
+    for (int k = 0; k < depths; k++) {
+        const double a = arrival[backwards ? depths - 1 - k : k];
+        const lq_v8 *at = e + (size_t)k * (size_t)directions;
+        for (int q = 0; q < directions; q++) out[q] += a * at[q];
+    }
+}
+
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments,  escaping, spread, assemble,     sweep,
-                                              survival, travel,   meet,   read_energies};
+    static const lq_solver_kernels kernels = {moments,  escaping, spread, assemble, sweep,
+                                              survival, travel,   meet,   average,  read_energies};
     return &kernels;
 }

@@ -55,7 +55,7 @@ static lq_status walk_tir_loss(lq_walk *walk, const lq_settings *settings, lq_wa
 
 /* Two-sided scattering takes cosines below this for it: light that enters exactly along the horizon meets the
  * surface at its very top, and energies approach that limit only over many decades of mu. */
-static const double grazing = 1e-6;
+static const double grazing = 1e-4;
 
 /* Both sides at the cosine looked up, or for the light of a diffuse base where walk->cosine says so. */
 static lq_status walk_sides(lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
