@@ -112,7 +112,7 @@ void lq_travel_up(const lq_depths *depths, double lambda, double from, double *w
     moments m = {{0.0}};
     const double room = 1.0 - from;
     lq_panels_start(&panels, 0.0, 1.0);
-    lq_panels_grade(&panels, 0.0, fmax(from / (4.0 * room * fmax(lambda, 1.0)), 1e-9), 4.0);
+    lq_panels_grade(&panels, 0.0, fmax(from / (4.0 * room * fmax(lambda, 1.0)), 1e-15), 4.0);
     for (int p = 0; p + 1 < panels.count; p++)
         for (int i = 0; i < NODES; i++) {
             double slope;
@@ -121,5 +121,7 @@ void lq_travel_up(const lq_depths *depths, double lambda, double from, double *w
             const double density = exp(-lambda * log1p(rest / from)) * 4.0 * room * y * y * y / u;
             add_depth(&m, depths->count, u, depths->rule.weight[i] * slope * density);
         }
+    /* A peak too narrow for any panel is the depth itself. */
+    if (!(m.of[0] > 0.0)) add_depth(&m, depths->count, from, 1.0);
     project(depths, &m, -expm1(lambda * log(from)), weights);
 }

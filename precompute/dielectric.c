@@ -315,6 +315,8 @@ static bool solve(const interface *f, solution *x) {
             kernels->meet(&k);
         }
     }
+    for (size_t q = 0; q < size; q++)
+        if (!(fabs(x->value[0][q][0]) < 10.0 && fabs(x->value[1][q][0]) < 10.0)) return false; /* NaN too */
     return change <= 1e-7;
 }
 
