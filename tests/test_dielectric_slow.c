@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* |R + T - 1| at one level of resolution, and at mu <= 1e-3. */
-#define GAP         1e-9
-#define GRAZING_GAP 1e-4
+#define GAP         5e-10
+#define GRAZING_GAP 2e-6
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -169,7 +169,11 @@ static void unity_gap(lq_rough *rough, double eta, int level, int side, double *
     double back[GAP_MUS], through[GAP_MUS];
     const lq_question questions[] = {{side, 0, LQ_MULTIPLE, gap_mu, GAP_MUS, &one, 1, back},
                                      {side, 1, LQ_MULTIPLE, gap_mu, GAP_MUS, &one, 1, through}};
-    assert_int_equal(lq_dielectric_answer(rough, eta, level, questions, 2, NULL), LQ_OK);
+    /* Nearly matched media: a fine level may be void, and says so; a coarser one holds. */
+    lq_status status = LQ_NOT_CONVERGED;
+    for (; status == LQ_NOT_CONVERGED && level >= 0; level--)
+        status = lq_dielectric_answer(rough, eta, level, questions, 2, NULL);
+    assert_int_equal(status, LQ_OK);
     for (int m = 0; m < GAP_MUS; m++) {
         assert_true(back[m] >= -1e-12 && back[m] <= 1.0 + 1e-12);
         assert_true(through[m] >= -1e-12 && through[m] <= 1.0 + 1e-12);
