@@ -24,7 +24,8 @@ typedef struct lq_job {
 typedef struct lq_evaluator {
     const char *id;
     int slice_axis;
-    /* Work that all slices share, or NULL; *state is handed to the others. */
+    /* Work that all slices share; *state is handed to the others. This and release are NULL where there is
+     * none. */
     lq_status (*prepare)(const lq_job *job, void **state, lq_error *error);
     /* All values of slice `index`: values[channel] has the product of the other axes, first axis fastest.
      * *estimate is of the largest error among them. */

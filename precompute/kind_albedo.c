@@ -13,17 +13,6 @@
 
 enum { MU, ALPHA };
 
-static lq_status prepare_nothing(const lq_job *job, void **state, lq_error *error) {
-    (void)job;
-    (void)error;
-    *state = NULL;
-    return LQ_OK;
-}
-
-static void release_nothing(void *state) {
-    (void)state;
-}
-
 static double clamp(double x) {
     return fmin(fmax(x, 0.0), 1.0);
 }
@@ -48,7 +37,7 @@ static lq_status albedo_slice(const lq_job *job, const void *state, size_t index
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_albedo = {"albedo", ALPHA, prepare_nothing, albedo_slice, release_nothing};
+const lq_evaluator lq_evaluate_albedo = {"albedo", ALPHA, NULL, albedo_slice, NULL};
 
 /* ------------------------------------------------------------------------ albedo-average */
 
@@ -104,8 +93,7 @@ static lq_status average_slice(const lq_job *job, const void *state, size_t inde
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_albedo_average = {"albedo-average", 0, prepare_nothing, average_slice,
-                                                 release_nothing};
+const lq_evaluator lq_evaluate_albedo_average = {"albedo-average", 0, NULL, average_slice, NULL};
 
 /* ----------------------------------------------------------------------------------- dfg */
 
@@ -133,4 +121,4 @@ static lq_status dfg_slice(const lq_job *job, const void *state, size_t index, d
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_dfg = {"dfg", ALPHA, prepare_nothing, dfg_slice, release_nothing};
+const lq_evaluator lq_evaluate_dfg = {"dfg", ALPHA, NULL, dfg_slice, NULL};

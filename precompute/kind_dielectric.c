@@ -163,17 +163,6 @@ static lq_status solve_directional(lq_rough *rough, double eta, double tolerance
     return status;
 }
 
-static lq_status prepare_nothing(const lq_job *job, void **state, lq_error *error) {
-    (void)job;
-    (void)error;
-    *state = NULL;
-    return LQ_OK;
-}
-
-static void release_nothing(void *state) {
-    (void)state;
-}
-
 static const double no_loss = 1.0;
 
 /* fgd-dielectric: mu, alpha, eta. transmission: mu, alpha, eta, tau. */
@@ -210,10 +199,8 @@ static lq_status transmission_slice(const lq_job *job, const void *state, size_t
     return directional_slice(job, index, 1, job->nodes[3], job->size[3], values[0], estimate, error);
 }
 
-const lq_evaluator lq_evaluate_fgd_dielectric = {"fgd-dielectric", 1, prepare_nothing, fgd_slice,
-                                                 release_nothing};
-const lq_evaluator lq_evaluate_transmission = {"transmission", 1, prepare_nothing, transmission_slice,
-                                               release_nothing};
+const lq_evaluator lq_evaluate_fgd_dielectric = {"fgd-dielectric", 1, NULL, fgd_slice, NULL};
+const lq_evaluator lq_evaluate_transmission = {"transmission", 1, NULL, transmission_slice, NULL};
 
 /* ---------------------------------------------------------------------- cosine-weighted means */
 
@@ -369,11 +356,11 @@ static lq_status variance_slice(const lq_job *job, const void *state, size_t ind
     return status;
 }
 
-const lq_evaluator lq_evaluate_diffuse_transmission = {"diffuse-transmission", 1, prepare_nothing,
-                                                       diffuse_transmission_slice, release_nothing};
-const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection", 1, prepare_nothing,
-                                                     diffuse_reflection_slice, release_nothing};
-const lq_evaluator lq_evaluate_variance = {"variance", 1, prepare_nothing, variance_slice, release_nothing};
+const lq_evaluator lq_evaluate_diffuse_transmission = {"diffuse-transmission", 1, NULL,
+                                                       diffuse_transmission_slice, NULL};
+const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection", 1, NULL, diffuse_reflection_slice,
+                                                     NULL};
+const lq_evaluator lq_evaluate_variance = {"variance", 1, NULL, variance_slice, NULL};
 
 /* ------------------------------------------------------------------------------ coated Lambertian */
 
@@ -445,5 +432,4 @@ static lq_status coated_slice(const lq_job *job, const void *state, size_t index
     return status;
 }
 
-const lq_evaluator lq_evaluate_coated_lambertian = {"coated-lambertian", 1, prepare_nothing, coated_slice,
-                                                    release_nothing};
+const lq_evaluator lq_evaluate_coated_lambertian = {"coated-lambertian", 1, NULL, coated_slice, NULL};

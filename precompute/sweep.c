@@ -48,9 +48,9 @@ lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double
     lq_status status = lq_job_make(&job, kind, settings, size, nodes, error);
     if (status != LQ_OK) return status;
     void *state = NULL;
-    status = evaluator->prepare(&job, &state, error);
+    if (evaluator->prepare) status = evaluator->prepare(&job, &state, error);
     if (status == LQ_OK) status = evaluator->slice(&job, state, 0, channels, estimate, error);
-    evaluator->release(state);
+    if (evaluator->release) evaluator->release(state);
     if (status == LQ_OK && *estimate > job.tolerance)
         return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g", *estimate,
                        job.tolerance);
@@ -183,10 +183,10 @@ static lq_status fill(sweep *s, int threads, lq_error *error) {
     void *state = NULL;
     s->estimates = calloc(slices, sizeof *s->estimates);
     if (!s->estimates) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu slices", slices);
-    s->status = s->evaluator->prepare(s->job, &state, error);
+    if (s->evaluator->prepare) s->status = s->evaluator->prepare(s->job, &state, error);
     s->state = state;
     if (s->status == LQ_OK) run(s, threads);
-    s->evaluator->release(state);
+    if (s->evaluator->release) s->evaluator->release(state);
     double estimate = 0.0;
     for (size_t i = 0; i < slices; i++) estimate = fmax(estimate, s->estimates[i]);
     free(s->estimates);
