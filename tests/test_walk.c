@@ -74,7 +74,7 @@ static lq_walk base_light(double alpha, double eta, double tau) {
     return walk;
 }
 
-/* Definitions section 4: independent walks of 2e7 samples at (n, kappa) = (0.2, 3.9). */
+/* Independent walks of 2e7 samples at (n, kappa) = (0.2, 3.9). */
 static void test_conductor_values(void **state) {
     (void)state;
     static const double alphas[3] = {0.05, 0.3, 1.0}, mus[3] = {0.05, 0.4, 0.95};
@@ -276,7 +276,7 @@ static void test_smooth_is_analytic(void **state) {
     assert_agrees(reflect(&rough), e.mean, 1e-7, "alpha 1e-4", 1.0);
 }
 
-/* Definitions section 5. */
+/* Corners of the parameter space: smooth, grazing, nearly matched, opaque. */
 static void test_hard_cases(void **state) {
     (void)state;
     static const double alphas[] = {0.0, 1e-4, 1e-3, 0.1, 1.0}, mus[] = {0.0, 1e-6, 1e-3, 1.0};

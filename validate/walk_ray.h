@@ -1,6 +1,6 @@
 /* One ray of a random walk inside the microsurface: where it is, and its flights between hits.
  *
- * The depth t = -ln C1(h) is all that matters of a height (definitions: H16, restated without heights).
+ * The depth t = -ln C1(h) is all that matters of a height (H16, restated without heights).
  * Per unit of t a ray meets the surface at the rate sigma(-omega) / |omega_z|: 1 + Lambda going down,
  * Lambda going up. The flights divide by the projected area, which is finite at grazing, not by Lambda.
  */
