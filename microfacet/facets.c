@@ -165,6 +165,11 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     for (int i = 0; i < fan->count; i++) fan->weight[i] *= scale * density[i];
 }
 
+void lq_facet_rule_make(lq_facet_rule *rule, int outer, int inner) {
+    lq_gauss_make(&rule->outer, outer);
+    lq_gauss_make(&rule->inner, inner);
+}
+
 static void visit_all(const view *w, const lq_gauss *outer, const lq_panels *extra, lq_fan_visitor *visit,
                       void *user) {
     lq_panels panels;

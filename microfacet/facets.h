@@ -42,6 +42,8 @@ typedef struct lq_facet_rule {
     lq_gauss inner; /* nodes per piece of azimuth: two pieces at most, up to LQ_FAN_MAX / 2 each */
 } lq_facet_rule;
 
+void lq_facet_rule_make(lq_facet_rule *rule, int outer, int inner);
+
 /* Visit every fan seen from v at height v_z in [-1,1] (v_z = 0 counts as above), sin_v = sqrt(1 - v_z^2),
  * alpha in (0,1]. `extra` (may be NULL) holds further break points in d on [0, pi/2]: those of the Fresnel
  * curves. The sum of all weights is sigma(v) to the accuracy of the rule. */

@@ -109,8 +109,7 @@ static bool operators_allocate(operators *o, double alpha, const lq_curves *curv
 
 static void operators_fill(operators *o, const lq_ndf *ndf, double alpha, const level *l, scatter *s) {
     lq_facet_rule rule;
-    lq_gauss_make(&rule.outer, l->outer);
-    lq_gauss_make(&rule.inner, l->inner);
+    lq_facet_rule_make(&rule, l->outer, l->inner);
     for (int i = 0; i < l->nodes; i++) {
         o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->down.mu[i]);
         o->a_up[i] = lq_lambda(ndf, alpha, o->up.mu[i]);
@@ -158,8 +157,7 @@ static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, doub
         return false;
     }
     lq_facet_rule rule;
-    lq_gauss_make(&rule.outer, l->outer);
-    lq_gauss_make(&rule.inner, l->inner);
+    lq_facet_rule_make(&rule, l->outer, l->inner);
     for (size_t m = 0; m < count; m++) {
         lq_first_bounce(ndf, alpha, LQ_CORRELATED, mu[m], curves, &rule, r->escaping + m * k,
                         r->remaining + m * k);

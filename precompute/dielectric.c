@@ -90,8 +90,7 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolut
     lq_rough_level *r = calloc(1, sizeof *r);
     if (!r) return NULL;
     lq_depths_make(&r->depths, l->depths);
-    lq_gauss_make(&r->rule.outer, l->outer);
-    lq_gauss_make(&r->rule.inner, l->inner);
+    lq_facet_rule_make(&r->rule, l->outer, l->inner);
     r->travel_down = lq_zeros(n * d * d);
     r->travel_up = lq_zeros(n * d * d);
     r->survival = lq_zeros(n * d);
@@ -324,8 +323,6 @@ static bool solve(const interface *f, solution *x) {
 
 /* Beta weights: the chance that light refracted on its first hit leaves the other side unhindered. */
 static double refracted_escape(double lambda_i, double lambda_o) {
-    if (isinf(lambda_o)) return 0.0;
-    if (isinf(lambda_i)) return lambda_o > 0.0 ? 0.0 : 1.0;
     return (1.0 + lambda_i) *
            exp(lgamma(1.0 + lambda_i) + lgamma(1.0 + lambda_o) - lgamma(2.0 + lambda_i + lambda_o));
 }
@@ -335,7 +332,6 @@ static double refracted_escape(double lambda_i, double lambda_o) {
  * node gets, the part that leaves at once is therefore known in closed form, and the value of the rest,
  * averaged over the depths of arrival, is weighted with what really stays. */
 typedef struct reader {
-    double lambda;
     double arrival[LQ_DEPTHS_MAX]; /* where a ray from outside meets its first facet */
     double row[4 * LQ_NODES_MAX];
     double escaping[2 * FINE];         /* leaves at once, on the fine nodes: own side, then other */
@@ -379,14 +375,14 @@ static void reader_make(reader *r, const interface *f, int s, double mu) {
     const int n = f->nodes;
     /* At mu = 0 itself the limit is approached only like mu^Lambda_o, slower than any table resolves. */
     const double cosine = fmax(mu, LQ_GRAZING);
-    r->lambda = lq_lambda(f->ndf, f->alpha, cosine);
-    lq_travel_down(&f->level->depths, r->lambda, 1.0, r->arrival);
+    const double lambda_i = lq_lambda(f->ndf, f->alpha, cosine);
+    lq_travel_down(&f->level->depths, lambda_i, 1.0, r->arrival);
     direct first;
     facet_row(f, s, cosine, r->row, &first);
     double stays[2] = {0.0, 0.0}, by_nodes[2] = {0.0, 0.0}; /* rising, but not out: by facets, and by nodes */
     for (int j = 0; j < FINE; j++) {
         r->escaping[j] = first.escaping[j];
-        r->escaping[FINE + j] = first.through[j] * refracted_escape(r->lambda, f->level->fine_lambda[j]);
+        r->escaping[FINE + j] = first.through[j] * refracted_escape(lambda_i, f->level->fine_lambda[j]);
         stays[0] -= r->escaping[j];
         stays[1] -= r->escaping[FINE + j];
     }
@@ -394,7 +390,7 @@ static void reader_make(reader *r, const interface *f, int s, double mu) {
         const int way = j / n;
         const double lambda = f->level->lambda[j % n], light = r->row[2 * way * n + j % n];
         const double leaves =
-            way == 0 ? reflected_escape(r->lambda, lambda) : refracted_escape(r->lambda, lambda);
+            way == 0 ? reflected_escape(lambda_i, lambda) : refracted_escape(lambda_i, lambda);
         r->survives[j] = mean_survival(f, r, j % n, way == 0);
         r->staying[j] = weight_staying(light, 1.0 - leaves, r->survives[j]);
         stays[way] += light;

@@ -58,8 +58,7 @@ double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking mas
     double estimate = INFINITY;
     for (int level = 0; level < RESOLUTIONS && estimate > tolerance; level++) {
         lq_facet_rule rule;
-        lq_gauss_make(&rule.outer, resolutions[level][0]);
-        lq_gauss_make(&rule.inner, resolutions[level][1]);
+        lq_facet_rule_make(&rule, resolutions[level][0], resolutions[level][1]);
         double change = 0.0;
         for (size_t m = 0; m < count; m++) {
             double now[LQ_CURVES_MAX], remaining[LQ_CURVES_MAX];

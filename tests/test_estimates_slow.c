@@ -3,18 +3,11 @@
 #include "tests/expect.h"
 
 #include "lacquer.h"
+#include "tests/uniform.h"
 
 #include <omp.h>
 
 enum { POINTS = 2000 };
-
-/* A counter-based stream that needs no state: splitmix64 (Steele et al. 2014). */
-static double uniform(unsigned long long index) {
-    unsigned long long z = index * 0x9e3779b97f4a7c15u + 0x243f6a8885a308d3u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static void random_point(unsigned long long i, double *point) {
     const double u[6] = {uniform(8 * i),     uniform(8 * i + 1), uniform(8 * i + 2),
