@@ -251,6 +251,103 @@ lq_status lq_kind_axes(const lq_kind *kind, lq_axis *axes, lq_error *error);
 lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_t count, double *energies,
                          lq_error *error);
 
+/* ======================================================================================
+ *                                   Factored tables
+ * ======================================================================================
+ *
+ * A table as sums of products of small textures (D22 sec. 4), in the form a shader evaluates:
+ *
+ *     clamp x to the table's axes; take the first piece whose box contains x
+ *     stream_k = sum over terms  product over factors g  of  base index[term][g] of factor g, filtered
+ *     value    = clamp(piece's value transform of its streams, value_min, value_max)
+ *
+ * A factor is one 1D or 2D texture set: `base_count` images over the same texels. End points of an axis sit
+ * on texel centres, u = (index (1 - 1/N) + 0.5/N) with index in [0,1], filtering is linear, addressing clamps.
+ */
+
+enum { LQ_MAX_STREAMS = 2, LQ_MAX_FACTORS = 8, LQ_MAX_PIECES = 8 };
+
+/* What a texture axis measures, from the table's point x. */
+typedef enum lq_coordinate {
+    LQ_COORDINATE_AXIS,     /* x[axis] */
+    LQ_COORDINATE_CRITICAL, /* mu = x[axis] from the critical cosine c = sqrt(max(1 - eta^2, 0)), eta = x[other]:
+                             * mu < c ? mu / c - 1 : (mu - c) / (1 - c), in [-1, 1] */
+    LQ_COORDINATES
+} lq_coordinate;
+
+typedef struct lq_texture_axis {
+    lq_coordinate coordinate;
+    int axis, other; /* of the table; `other` only where the coordinate reads it */
+    lq_axis texels;  /* map linear, sqrt or power; node i is the centre of texel i; name: the coordinate's */
+} lq_texture_axis;
+
+typedef struct lq_factor {
+    int axis_count; /* 1 or 2 */
+    lq_texture_axis axes[2];
+    size_t base_count;
+    float *data; /* data[(base * height + row) * width + column], column along axes[0]; all exact in half */
+} lq_factor;
+
+/* sum over t < term_count of the product over g < factor_count of base index[t * factor_count + g] of the
+ * piece's factor factors[g]. */
+typedef struct lq_term_sum {
+    size_t term_count;
+    int factor_count;
+    int factors[LQ_MAX_FACTORS];
+    unsigned short *index;
+} lq_term_sum;
+
+/* Streams into the value. */
+typedef enum lq_value {
+    LQ_VALUE_PLAIN,  /* stream 0 */
+    LQ_VALUE_SQUARE, /* stream 0 squared */
+    LQ_VALUE_BEER,   /* max(stream 0, 0) * t^(1 / max(stream 1, LQ_LEAST_COSINE)), t = x[value_axis]: energy
+                      * and effective cosine of a crossing; 0 at t = 0 */
+    LQ_VALUES
+} lq_value;
+
+#define LQ_LEAST_COSINE 0.015625 /* 2^-6, exact in half */
+
+typedef struct lq_piece {
+    double min[LQ_MAX_AXES], max[LQ_MAX_AXES]; /* its box on the table's axes, both ends included */
+    lq_value value;
+    int value_axis; /* LQ_VALUE_BEER: the axis of t */
+    int factor_count;
+    lq_factor factors[LQ_MAX_FACTORS];
+    int stream_count;
+    lq_term_sum streams[LQ_MAX_STREAMS];
+} lq_piece;
+
+typedef struct lq_factored {
+    int axis_count;
+    struct {
+        char name[LQ_NAME_SIZE];
+        double min, max;
+    } axes[LQ_MAX_AXES];
+    double value_min, value_max; /* the physical range every value is clamped to */
+    int piece_count;
+    lq_piece pieces[LQ_MAX_PIECES];
+    size_t fact_count;
+    lq_fact *facts; /* those of the table it came from, and the error report: "pca-max", ... */
+} lq_factored;
+
+/* Value at a point: in double with exact interpolation weights, or as a GPU gets it: single precision and
+ * filter weights of 8 fractional bits. */
+double lq_factored_lookup(const lq_factored *factored, const double *point);
+double lq_factored_lookup_gpu(const lq_factored *factored, const double *point);
+
+/* Bytes of all bases stored in half. */
+size_t lq_factored_bytes(const lq_factored *factored);
+
+/* Its fact, or NULL. */
+const char *lq_factored_fact(const lq_factored *factored, const char *key);
+void lq_factored_free(lq_factored *factored);
+
+/* One file, an EXR archive: reading back gives an identical factored table. LQ_FORMAT where the file holds a
+ * table and no factors. */
+lq_status lq_factored_write(const lq_factored *factored, const char *path, lq_error *error);
+lq_status lq_factored_read(lq_factored **factored, const char *path, lq_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -29,7 +29,7 @@ static json_t *nodes_to_json(const lq_axis *axis) {
     return array;
 }
 
-static json_t *axis_to_json(const lq_axis *axis) {
+json_t *lq_axis_to_json(const lq_axis *axis) {
     json_t *json =
         json_pack("{s:s, s:I, s:f, s:f, s:s, s:f}", "name", axis->name, "size", (json_int_t)axis->size, "min",
                   axis->min, "max", axis->max, "map", lq_map_name(axis->map), "exponent", axis->exponent);
@@ -51,7 +51,7 @@ static char *array_text(const lq_table *table, size_t count, json_t *(*item)(con
 }
 
 static json_t *axis_item(const lq_table *table, size_t i) {
-    return axis_to_json(&table->axes[i]);
+    return lq_axis_to_json(&table->axes[i]);
 }
 
 static json_t *channel_item(const lq_table *table, size_t i) {
@@ -109,7 +109,7 @@ static lq_status parse_nodes(lq_axis *axis, const char *name, json_int_t size, c
     return status;
 }
 
-static lq_status parse_axis(json_t *json, lq_axis *axis, lq_error *error) {
+lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error) {
     const char *name, *map_name;
     json_int_t size;
     double min, max, exponent;
@@ -134,7 +134,7 @@ lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_erro
     lq_status status = LQ_OK;
     size_t size = json_array_size(array);
     while ((size_t)*count < size && !status) {
-        status = parse_axis(json_array_get(array, (size_t)*count), &axes[*count], error);
+        status = lq_axis_from_json(json_array_get(array, (size_t)*count), &axes[*count], error);
         if (!status) ++*count;
     }
     json_decref(array);

@@ -2,6 +2,7 @@
 #ifndef LQ_TABLES_EXR_LAYOUT_H
 #define LQ_TABLES_EXR_LAYOUT_H
 
+#include <jansson.h>
 #include <stdint.h>
 
 #include "lacquer.h"
@@ -26,6 +27,10 @@ enum { LQ_EXR_PARALLEL = 1 << 16 };
 char *lq_exr_axes_text(const lq_table *table);
 char *lq_exr_channels_text(const lq_table *table);
 char *lq_exr_facts_text(const lq_table *table);
+
+/* One axis, and back; the message names no file. */
+json_t *lq_axis_to_json(const lq_axis *axis);
+lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error);
 
 /* The axes a JSON text describes; frees what it made when it fails. The message names no file. */
 lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_error *error);

@@ -1,11 +1,12 @@
 /* table.c - N-dimensional float tables in memory: creation, facts, interpolation. */
-#define _POSIX_C_SOURCE 200809L /* strdup, sysconf */
+#define _POSIX_C_SOURCE 200809L /* sysconf */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "tables/axis.h"
+#include "tables/facts.h"
 #include "tables/status.h"
 
 /* 2^33 floats, 32 GiB a channel: eight times the largest table anyone has asked for, and far below where
@@ -109,11 +110,7 @@ void lq_table_free(lq_table *table) {
     if (!table) return;
     for (int i = 0; i < table->axis_count; i++) lq_axis_free(&table->axes[i]);
     for (int i = 0; i < table->channel_count; i++) free(table->channels[i]);
-    for (size_t i = 0; i < table->fact_count; i++) {
-        free(table->facts[i].key);
-        free(table->facts[i].value);
-    }
-    free(table->facts);
+    lq_facts_free(table->facts, table->fact_count);
     free(table);
 }
 
@@ -131,42 +128,12 @@ int lq_table_axis(const lq_table *table, const char *name) {
 
 /* ------------------------------------------------------------------ facts */
 
-static lq_fact *find_fact(const lq_table *table, const char *key) {
-    for (size_t i = 0; i < table->fact_count; i++)
-        if (strcmp(table->facts[i].key, key) == 0) return &table->facts[i];
-    return NULL;
-}
-
 const char *lq_table_fact(const lq_table *table, const char *key) {
-    const lq_fact *fact = find_fact(table, key);
-    return fact ? fact->value : NULL;
-}
-
-/* Takes over `key` and `value` when it succeeds. */
-static bool append_fact(lq_table *table, char *key, char *value) {
-    lq_fact *facts = realloc(table->facts, (table->fact_count + 1) * sizeof *facts);
-    if (!facts) return false;
-    table->facts = facts;
-    facts[table->fact_count++] = (lq_fact){key, value};
-    return true;
+    return lq_facts_find(table->facts, table->fact_count, key);
 }
 
 lq_status lq_table_set_fact(lq_table *table, const char *key, const char *value, lq_error *error) {
-    lq_status status = lq_name_check("fact", key, error);
-    if (status) return status;
-    if (!value) return lq_fail(error, LQ_BAD_INPUT, "fact '%s' without a value; accepted is any text", key);
-    char *new_value = strdup(value);
-    lq_fact *old = find_fact(table, key);
-    if (new_value && old) {
-        free(old->value);
-        old->value = new_value;
-        return LQ_OK;
-    }
-    char *new_key = new_value ? strdup(key) : NULL;
-    if (new_key && append_fact(table, new_key, new_value)) return LQ_OK;
-    free(new_key);
-    free(new_value);
-    return lq_fail(error, LQ_NO_MEMORY, "no memory for fact '%s'", key);
+    return lq_facts_set(&table->facts, &table->fact_count, key, value, error);
 }
 
 /* ------------------------------------------------------------------ interpolation */

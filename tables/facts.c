@@ -1,0 +1,50 @@
+/* facts.c - lists of facts: key and value, in the order they were set. */
+#define _POSIX_C_SOURCE 200809L /* strdup */
+#include "tables/facts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tables/axis.h"
+#include "tables/status.h"
+
+const char *lq_facts_find(const lq_fact *facts, size_t count, const char *key) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(facts[i].key, key) == 0) return facts[i].value;
+    return NULL;
+}
+
+/* Takes over `key` and `value` when it succeeds. */
+static bool append(lq_fact **facts, size_t *count, char *key, char *value) {
+    lq_fact *longer = realloc(*facts, (*count + 1) * sizeof *longer);
+    if (!longer) return false;
+    *facts = longer;
+    longer[(*count)++] = (lq_fact){key, value};
+    return true;
+}
+
+lq_status lq_facts_set(lq_fact **facts, size_t *count, const char *key, const char *value, lq_error *error) {
+    lq_status status = lq_name_check("fact", key, error);
+    if (status) return status;
+    if (!value) return lq_fail(error, LQ_BAD_INPUT, "fact '%s' without a value; accepted is any text", key);
+    char *new_value = strdup(value);
+    for (size_t i = 0; new_value && i < *count; i++) {
+        if (strcmp((*facts)[i].key, key) != 0) continue;
+        free((*facts)[i].value);
+        (*facts)[i].value = new_value;
+        return LQ_OK;
+    }
+    char *new_key = new_value ? strdup(key) : NULL;
+    if (new_key && append(facts, count, new_key, new_value)) return LQ_OK;
+    free(new_key);
+    free(new_value);
+    return lq_fail(error, LQ_NO_MEMORY, "no memory for fact '%s'", key);
+}
+
+void lq_facts_free(lq_fact *facts, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        free(facts[i].key);
+        free(facts[i].value);
+    }
+    free(facts);
+}
