@@ -213,8 +213,26 @@ const lq_kind *lq_kind_find(const char *id, lq_error *error);
 
 /* The NDFs, by the same pattern. */
 size_t lq_ndf_count(void);
-const char *lq_ndf_id(size_t i);
+const char *lq_ndf_id(size_t i);     /* "ggx", "gtr", "file", ... */
+const char *lq_ndf_syntax(size_t i); /* how lq_settings.ndf names one: "gtr:gamma=G" */
 const char *lq_ndf_title(size_t i);
+
+/* An NDF, opened: its parameters read, its file or plugin loaded, and what it tabulates kept between calls.
+ */
+typedef struct lq_ndf lq_ndf;
+
+/* LQ_BAD_INPUT: unknown, parameters out of range, a file with values no NDF has (its line is named), a plugin
+ * of another version. LQ_IO, LQ_FORMAT: cannot be read, cannot be loaded. */
+lq_status lq_ndf_open(const lq_ndf **ndf, const char *text, lq_error *error);
+void lq_ndf_close(const lq_ndf *ndf); /* NULL: nothing */
+
+/* The text that opens the same NDF again: every parameter, and the hash of a file's content, without which a
+ * changed file would go unnoticed. It is the fact "ndf" of a table. */
+const char *lq_ndf_text(const lq_ndf *ndf);
+/* What was done to a file or a plugin's D (normalisation, extrapolation), on one line; NULL: nothing. */
+const char *lq_ndf_note(const lq_ndf *ndf);
+/* The roughnesses it has besides alpha = 0; equal: it has only this one, and tables one node of alpha. */
+void lq_ndf_range(const lq_ndf *ndf, double *alpha_min, double *alpha_max);
 
 /* ======================================================================================
  *                                      Computation
@@ -222,11 +240,12 @@ const char *lq_ndf_title(size_t i);
 
 typedef struct lq_settings {
     size_t struct_size; /* sizeof(lq_settings); lq_settings_default sets it */
-    const char *ndf;    /* "ggx" */
+    const char *ndf;    /* "ggx"; see lq_ndf_open */
     lq_scattering scattering;
     lq_masking masking;
-    double tolerance; /* absolute error of every value; 0: the kind's default */
-    int threads;      /* 0: one per core. Results do not depend on it. */
+    double tolerance;     /* absolute error of every value; 0: the kind's default */
+    int threads;          /* 0: one per core. Results do not depend on it. */
+    const lq_ndf *opened; /* `ndf`, opened; NULL: every call opens it */
 } lq_settings;
 
 lq_settings lq_settings_default(void);

@@ -4,23 +4,37 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
+#include <stdlib.h>
+
 static const char *const scatterings[] = {[LQ_SINGLE] = "single", [LQ_MULTIPLE] = "multiple"};
 static const char *const maskings[] = {[LQ_CORRELATED] = "correlated", [LQ_SEPARABLE] = "separable"};
 static const char *const names[] = {"--ndf", "--scattering", "--masking", "--tolerance", "--threads"};
 
-enum { MAX_NDFS = 32, MAX_THREADS = 1024 };
+enum { MAX_THREADS = 1024 };
 
 cli_settings cli_settings_default(void) {
     return (cli_settings){.settings = lq_settings_default()};
 }
 
+/* The NDF of the command, for as long as the program runs: whoever copied the settings may use it. */
+static const lq_ndf *opened;
+
+static void close_ndf(void) {
+    lq_ndf_close(opened);
+}
+
 static bool take_ndf(lq_settings *settings, const char *value) {
-    const char *ids[MAX_NDFS];
-    size_t count = lq_ndf_count() < MAX_NDFS ? lq_ndf_count() : MAX_NDFS;
-    for (size_t i = 0; i < count; i++) ids[i] = lq_ndf_id(i);
-    int choice = cli_parse_choice("--ndf", value, ids, count);
-    if (choice >= 0) settings->ndf = ids[choice];
-    return choice >= 0;
+    lq_error error = {""};
+    if (!opened) atexit(close_ndf);
+    lq_ndf_close(opened);
+    if (lq_ndf_open(&opened, value, &error) != LQ_OK) {
+        cli_message("--ndf: %s", error.text);
+        return false;
+    }
+    settings->opened = opened;
+    settings->ndf = lq_ndf_text(opened);
+    if (lq_ndf_note(opened)) cli_message("%s", lq_ndf_note(opened));
+    return true;
 }
 
 static bool take_scattering(lq_settings *settings, const char *value) {

@@ -7,7 +7,7 @@
 
 static void print_ndfs(void) {
     printf("NDFs (--ndf)\n");
-    for (size_t i = 0; i < lq_ndf_count(); i++) printf("  %-15s %s\n", lq_ndf_id(i), lq_ndf_title(i));
+    for (size_t i = 0; i < lq_ndf_count(); i++) printf("  %-17s %s\n", lq_ndf_syntax(i), lq_ndf_title(i));
 }
 
 static void print_formats(void) {

@@ -7,6 +7,8 @@
 #ifndef LACQUER_MICROFACET_KERNELS_H
 #define LACQUER_MICROFACET_KERNELS_H
 
+#include "microfacet/octaves.h"
+
 #include <stddef.h>
 
 /* What the facets of one fan have in common (facets.c). */
@@ -25,6 +27,10 @@ typedef struct lq_microfacet_kernels {
     /* lq_ndf.density and lq_ndf.areas_below of GGX */
     void (*ggx_density)(double alpha, size_t count, const double *cos2, const double *sin2, double *d);
     void (*ggx_areas_below)(double alpha, size_t count, const double *mu, double *area);
+    /* The same of the NDFs that tabulate (profile.h): over b^2 cos^2 + sin^2, and over b + (1 - b) mu. */
+    void (*octaves_density)(const lq_octaves *o, size_t count, const double *cos2, const double *sin2,
+                            double *d);
+    void (*octaves_areas)(const lq_octaves *o, size_t count, const double *mu, double *area);
     /* Azimuth nodes h = chi/2 in [0, pi/2] with weights dh to facets: fills mirror, e_z and cos^2, sin^2 of
      * their tilt, and turns dh into dpsi. */
     void (*place_facets)(const lq_fan_constants *k, size_t count, const double *h, double *dpsi,

@@ -29,6 +29,36 @@ static void ggx_areas_below(double alpha, size_t count, const double *restrict m
     }
 }
 
+/* x in [floor, 1) by its cell; what rounding puts outside is brought back. */
+static double octaves_value(const lq_octaves *o, const double (*restrict cubic)[4], double x) {
+    const double least = o->floor, most = 0x1.fffffffffffffp-1;
+    x = x < least ? least : x > most ? most : x;
+    union {
+        double x;
+        int64_t bits;
+    } at = {x}, start;
+    const int64_t cell = at.bits >> o->shift;
+    start.bits = (int64_t)((uint64_t)cell << o->shift);
+    const double u = x - start.x;
+    const double *restrict c = cubic[cell - o->first];
+    const double value = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+    return value > 0.0 ? value : 0.0;
+}
+
+static void octaves_density(const lq_octaves *o, size_t count, const double *restrict cos2,
+                            const double *restrict sin2, double *restrict d) {
+    const double b2 = o->floor;
+    for (size_t i = 0; i < count; i++)
+        d[i] = octaves_value(o, (const double(*)[4])o->cubic, b2 * cos2[i] + sin2[i]);
+}
+
+static void octaves_areas(const lq_octaves *o, size_t count, const double *restrict mu,
+                          double *restrict area) {
+    const double b = o->floor, rest = 1.0 - b;
+    for (size_t i = 0; i < count; i++)
+        area[i] = octaves_value(o, (const double(*)[4])o->cubic, b + rest * mu[i]);
+}
+
 /* sin h on [0, pi/2] by its Taylor series, absolute error below 1e-17. */
 enum { SIN_TERMS = 11 };
 static const double sin_series[SIN_TERMS] = {
@@ -74,6 +104,7 @@ static void place_facets(const lq_fan_constants *k, size_t count, const double *
 }
 
 const lq_microfacet_kernels *LQ_KERNELS(void) {
-    static const lq_microfacet_kernels kernels = {conductors, ggx_density, ggx_areas_below, place_facets};
+    static const lq_microfacet_kernels kernels = {conductors,      ggx_density,   ggx_areas_below,
+                                                  octaves_density, octaves_areas, place_facets};
     return &kernels;
 }

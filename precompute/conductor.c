@@ -79,10 +79,11 @@ static void scatter_fan(void *user, const lq_fan *fan) {
 static void write_row(const operators *o, const lq_node_axis *axis, const double *moments, double total,
                       int i, int row, int column, double *out) {
     double values[LQ_NODES_MAX];
+    const double scale = lq_inverse_area(total);
     for (int k = 0; k < o->curves; k++) {
         lq_node_axis_project(axis, moments + k * o->nodes, values);
         for (int j = 0; j < o->nodes; j++)
-            out[(size_t)k * o->stride + (size_t)(i * row + j * column)] = values[j] / total;
+            out[(size_t)k * o->stride + (size_t)(i * row + j * column)] = values[j] * scale;
     }
 }
 

@@ -218,7 +218,7 @@ static void facet_row(const interface *f, int s, double v_z, double *row, direct
     }
     lq_facets_visit(f->ndf, f->alpha, v_z, sine, rule, &own->kinks, add_reflection, &k);
     lq_facets_visit_refracted(f->ndf, f->alpha, own->eta, v_z, sine, rule, &own->kinks, add_refraction, &k);
-    const double scale = 1.0 / (k.reflected + k.refracted);
+    const double scale = lq_inverse_area(k.reflected + k.refracted);
     for (int m = 0; m < 4 * n; m++) moments[m] *= scale;
     for (int m = 0; m < FINE; m++) {
         at_once.escaping[m] *= scale;

@@ -5,7 +5,6 @@
 #include "tables/status.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 const lq_evaluator *lq_evaluator_find(const char *id) {
@@ -46,14 +45,30 @@ static lq_status check_nodes(const lq_job *job, lq_error *error) {
     return LQ_OK;
 }
 
-static lq_status choose_ndf(lq_job *job, const char *id, lq_error *error) {
-    char known[512] = "";
-    job->ndf = lq_ndf_find(id);
+static lq_status choose_ndf(lq_job *job, const lq_settings *settings, lq_error *error) {
+    job->ndf = settings->opened;
     if (job->ndf) return LQ_OK;
-    for (size_t i = 0, used = 0; i < lq_ndf_builtin_count() && used < sizeof known; i++)
-        used +=
-            (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", lq_ndf_builtin(i)->id);
-    return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'; known: %s", id, known);
+    const lq_status status = lq_ndf_open(&job->ndf, settings->ndf, error);
+    job->own = job->ndf;
+    return status;
+}
+
+/* Every kind is sliced along its roughness: it is what a solve cannot share. */
+lq_status lq_job_prepare(const lq_job *job, const lq_evaluator *evaluator, size_t index, lq_error *error) {
+    return lq_ndf_prepare(job->ndf, job->nodes[evaluator->slice_axis][index], error);
+}
+
+static lq_status check_roughness(const lq_job *job, lq_error *error) {
+    const int axis = lq_evaluator_find(job->kind->id)->slice_axis;
+    for (size_t i = 0; i < job->size[axis]; i++) {
+        const lq_status status = lq_ndf_check(job->ndf, job->nodes[axis][i], error);
+        if (status != LQ_OK) return status;
+    }
+    return LQ_OK;
+}
+
+void lq_job_free(lq_job *job) {
+    lq_ndf_close(job->own);
 }
 
 static lq_status check_options(const lq_kind *kind, const lq_settings *settings, lq_error *error) {
@@ -88,8 +103,10 @@ lq_status lq_job_make(lq_job *job, const lq_kind *kind, const lq_settings *setti
         job->nodes[a] = nodes[a];
     }
     lq_status status = check_options(kind, settings, error);
-    if (status == LQ_OK) status = choose_ndf(job, settings->ndf, error);
+    if (status == LQ_OK) status = choose_ndf(job, settings, error);
     if (status == LQ_OK) status = choose_tolerance(job, settings->tolerance, error);
     if (status == LQ_OK) status = check_nodes(job, error);
+    if (status == LQ_OK) status = check_roughness(job, error);
+    if (status != LQ_OK) lq_job_free(job);
     return status;
 }

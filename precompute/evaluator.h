@@ -14,6 +14,7 @@
 typedef struct lq_job {
     const lq_kind *kind;
     const lq_ndf *ndf;
+    const lq_ndf *own; /* the same where the job opened it, otherwise NULL */
     lq_scattering scattering;
     lq_masking masking;
     double tolerance;
@@ -42,5 +43,10 @@ size_t lq_slice_entries(const lq_job *job, const lq_evaluator *evaluator);
 /* Fill a job and check it: settings the kind takes, a known NDF, a tolerance it reaches, nodes in range. */
 lq_status lq_job_make(lq_job *job, const lq_kind *kind, const lq_settings *settings, const size_t *size,
                       const double *const *nodes, lq_error *error);
+/* Only after a job that was made. */
+void lq_job_free(lq_job *job);
+
+/* What slice `index` of the roughness needs of the NDF, made where it can still fail. */
+lq_status lq_job_prepare(const lq_job *job, const lq_evaluator *evaluator, size_t index, lq_error *error);
 
 #endif

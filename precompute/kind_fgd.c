@@ -133,9 +133,12 @@ lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_
     lq_status status = lq_job_make(&job, kind, settings, size, nodes, error);
     if (status != LQ_OK) return status;
     lq_conductors material;
-    status = lq_conductors_make(&material, point + N, point + KAPPA, 1, 1e-14, error);
-    if (status != LQ_OK) return status;
-    status = lq_conductor_orders(job.ndf, point[ALPHA], &material, point[MU], count, energies, error);
-    lq_conductors_free(&material);
+    status = lq_job_prepare(&job, &lq_evaluate_fgd, 0, error);
+    if (status == LQ_OK) status = lq_conductors_make(&material, point + N, point + KAPPA, 1, 1e-14, error);
+    if (status == LQ_OK) {
+        status = lq_conductor_orders(job.ndf, point[ALPHA], &material, point[MU], count, energies, error);
+        lq_conductors_free(&material);
+    }
+    lq_job_free(&job);
     return status;
 }

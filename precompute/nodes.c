@@ -17,6 +17,10 @@ double *lq_zeros(size_t count) {
     return p;
 }
 
+double lq_inverse_area(double area) {
+    return area > 1e-250 ? 1.0 / area : 0.0;
+}
+
 static double map_forward(const lq_cosine_map *map, double mu) {
     const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
     return map->scale * asinh(t * map->inverse_alpha) + map->shift;

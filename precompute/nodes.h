@@ -49,6 +49,10 @@ void lq_node_axis_project(const lq_node_axis *axis, const double *moments, doubl
 /* Interpolation weights at one cosine. */
 void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights);
 
+/* 1 / area, or 0 where an NDF that falls like exp(-slope^2) shows a rising ray no facet at all: it has no
+ * next hit (its Lambda is 0 too) and needs no row. */
+double lq_inverse_area(double area);
+
 /* `count` doubles, zero, aligned to a vector; NULL without memory. */
 double *lq_zeros(size_t count);
 

@@ -19,20 +19,6 @@ lq_settings lq_settings_default(void) {
                          .threads = 0};
 }
 
-size_t lq_ndf_count(void) {
-    return lq_ndf_builtin_count();
-}
-
-const char *lq_ndf_id(size_t i) {
-    const lq_ndf *ndf = lq_ndf_builtin(i);
-    return ndf ? ndf->id : NULL;
-}
-
-const char *lq_ndf_title(size_t i) {
-    const lq_ndf *ndf = lq_ndf_builtin(i);
-    return ndf ? ndf->title : NULL;
-}
-
 lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double *point, double *values,
                   double *estimate, lq_error *error) {
     const lq_evaluator *evaluator = lq_evaluator_find(kind->id);
@@ -49,8 +35,10 @@ lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double
     if (status != LQ_OK) return status;
     void *state = NULL;
     if (evaluator->prepare) status = evaluator->prepare(&job, &state, error);
+    if (status == LQ_OK) status = lq_job_prepare(&job, evaluator, 0, error);
     if (status == LQ_OK) status = evaluator->slice(&job, state, 0, channels, estimate, error);
     if (evaluator->release) evaluator->release(state);
+    lq_job_free(&job);
     if (status == LQ_OK && *estimate > job.tolerance)
         return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g", *estimate,
                        job.tolerance);
@@ -92,8 +80,9 @@ static lq_status compute_slice(sweep *s, size_t index, lq_error *error) {
     double *block = malloc(channels * entries * sizeof *block);
     if (!block) return lq_fail(error, LQ_NO_MEMORY, "no memory for a slice of %zu entries", entries);
     for (size_t c = 0; c < channels; c++) values[c] = block + c * entries;
-    const lq_status status =
-        s->evaluator->slice(s->job, s->state, index, values, &s->estimates[index], error);
+    lq_status status = lq_job_prepare(s->job, s->evaluator, index, error);
+    if (status == LQ_OK)
+        status = s->evaluator->slice(s->job, s->state, index, values, &s->estimates[index], error);
     if (status == LQ_OK) scatter_slice(s, index, values);
     free(block);
     return status;
@@ -213,10 +202,15 @@ lq_status lq_precompute(const lq_kind *kind, const lq_settings *settings, const 
     status = lq_job_make(&job, kind, settings, size, nodes, error);
     if (status == LQ_OK)
         status = lq_table_create(table, axes, kind->axis_count, kind->channels, kind->channel_count, error);
-    if (status != LQ_OK) return status;
+    else return status;
+    if (status != LQ_OK) {
+        lq_job_free(&job);
+        return status;
+    }
     sweep s = {.job = &job, .evaluator = lq_evaluator_find(kind->id), .table = *table, .progress = progress};
     s.error = error;
     status = fill(&s, settings->threads > 0 ? settings->threads : omp_get_num_procs(), error);
+    lq_job_free(&job);
     /* A table that missed its tolerance is still a table, and says by how much. */
     if (status != LQ_OK && status != LQ_NOT_CONVERGED) {
         lq_table_free(*table);

@@ -85,7 +85,7 @@ refused 'needs a value' eval fgd "${point[@]}" --tolerance
 refused "'0' is not a number from" eval fgd "${point[@]}" --tolerance 0
 refused "'tiny' is not a number" eval fgd "${point[@]}" --tolerance tiny
 refused 'tolerance.*1e-14' eval fgd "${point[@]}" --tolerance 1e-14
-refused "'phong' is not one of: ggx" eval fgd "${point[@]}" --ndf phong
+refused "unknown NDF 'phong'; known: ggx, beckmann" eval fgd "${point[@]}" --ndf phong
 refused 'single, multiple' eval fgd "${point[@]}" --scattering double
 refused 'correlated, separable' eval fgd "${point[@]}" --masking none
 refused 'text, csv, json' eval fgd "${point[@]}" --format xml

@@ -1,5 +1,6 @@
 /* Visible normals: both samplers against quadrature over the normals, for GGX and for an NDF with no closed
  * form, from directions above, at and below the horizon. */
+#include "microfacet/beckmann.h"
 #include "microfacet/ggx.h"
 #include "validate/sample_visible.h"
 #include "validate/walk.h"
@@ -13,21 +14,6 @@
 #include <cmocka.h>
 
 enum { SAMPLES = 40000, MOMENTS = 4 };
-
-/* Beckmann (H16 supplemental; Walter et al. 2007): a light tail, and a sampler that only rejection gives. */
-static double beckmann_quantile(const lq_ndf *ndf, double alpha, double xi) {
-    (void)ndf;
-    return alpha * sqrt(-log1p(-xi));
-}
-
-static double beckmann_area_below(const lq_ndf *ndf, double alpha, double mu, double sin_theta) {
-    (void)ndf;
-    const double a = mu / (alpha * sin_theta), root_pi = 1.77245385090551602730;
-    return 0.5 * (alpha * sin_theta * exp(-a * a) / root_pi - mu * erfc(a));
-}
-
-static const lq_ndf beckmann = {
-    .id = "beckmann", .area_below = beckmann_area_below, .slope_quantile = beckmann_quantile};
 
 /* m_x, m_z, v.m and its square: what walks depend on. */
 static void moments_of(const lq_facet *f, double *moments) {
@@ -112,7 +98,7 @@ static void test_ggx_by_rejection(void **state) {
 
 static void test_beckmann_by_rejection(void **state) {
     (void)state;
-    check(&beckmann, false);
+    check(&lq_beckmann, false);
 }
 
 /* Nothing may break at the ends of the range, where 1 + v_z and the slopes underflow. */
@@ -140,7 +126,7 @@ static void test_extremes(void **state) {
 static void test_walk_on_beckmann(void **state) {
     (void)state;
     lq_walk walk = lq_walk_default();
-    walk.ndf = &beckmann;
+    walk.ndf = &lq_beckmann;
     walk.mu = 0.4;
     walk.alpha = 0.6;
     walk.samples = 40000;

@@ -165,8 +165,10 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     const int which = find(kind);
     if (which < 0) return lq_fail(error, LQ_BAD_INPUT, "no random walk is known for table '%s'", kind->id);
     lq_walk walk = lq_walk_default();
-    walk.ndf = lq_ndf_find(settings->ndf);
-    if (!walk.ndf) return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'", settings->ndf);
+    const lq_ndf *own = NULL;
+    lq_status status = settings->opened ? LQ_OK : lq_ndf_open(&own, settings->ndf, error);
+    if (status != LQ_OK) return status;
+    walk.ndf = own ? own : settings->opened;
     walk.mu = coordinate(kind, point, "mu", 1.0);
     walk.alpha = coordinate(kind, point, "alpha", 0.0);
     walk.n = coordinate(kind, point, "n", coordinate(kind, point, "eta", 1.0));
@@ -176,7 +178,10 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     walk.seed = run->seed;
     walk.purpose = run->purpose;
     walk.threads = run->threads;
-    return walks[which].run(&walk, settings, values, error);
+    status = lq_ndf_prepare(walk.ndf, walk.alpha, error);
+    if (status == LQ_OK) status = walks[which].run(&walk, settings, values, error);
+    lq_ndf_close(own);
+    return status;
 }
 
 double lq_walk_noise(lq_walk_mean mean, size_t samples) {

@@ -1,0 +1,102 @@
+/* From what --ndf takes to an NDF: the list of families, and the reading of their parameters. */
+#include "microfacet/gtr.h"
+#include "microfacet/ndf.h"
+#include "microfacet/student_t.h"
+#include "tables/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct family {
+    const char *id, *syntax, *title;
+    /* `text` is what follows "id:", or NULL. */
+    lq_status (*open)(const lq_ndf **ndf, const struct family *of, const char *text, lq_error *error);
+} family;
+
+/* The one parameter `gamma=NUMBER`. */
+static lq_status read_gamma(const family *of, const char *text, double *gamma, lq_error *error) {
+    static const char name[] = "gamma=";
+    char *end = NULL;
+    if (text && strncmp(text, name, sizeof name - 1) == 0) *gamma = strtod(text + sizeof name - 1, &end);
+    if (end && end > text + sizeof name - 1 && *end == '\0') return LQ_OK;
+    return lq_fail(error, LQ_BAD_INPUT, "NDF '%s%s%s' is not read; write %s", of->id, text ? ":" : "",
+                   text ? text : "", of->syntax);
+}
+
+static lq_status open_closed(const lq_ndf **ndf, const family *of, const char *text, lq_error *error) {
+    if (text) return lq_fail(error, LQ_BAD_INPUT, "NDF %s takes no parameters, not '%s'", of->id, text);
+    *ndf = lq_ndf_find(of->id);
+    return LQ_OK;
+}
+
+static lq_status open_gtr(const lq_ndf **ndf, const family *of, const char *text, lq_error *error) {
+    double gamma = 0.0;
+    const lq_status status = read_gamma(of, text, &gamma, error);
+    return status == LQ_OK ? lq_gtr_open(ndf, gamma, error) : status;
+}
+
+static lq_status open_student_t(const lq_ndf **ndf, const family *of, const char *text, lq_error *error) {
+    double gamma = 0.0;
+    const lq_status status = read_gamma(of, text, &gamma, error);
+    return status == LQ_OK ? lq_student_t_open(ndf, gamma, error) : status;
+}
+
+static const family families[] = {
+    {"ggx", "ggx", "GGX (Trowbridge-Reitz): alpha is the slope scale itself", open_closed},
+    {"beckmann", "beckmann", "normally distributed slopes: alpha is sqrt(2) times their rms", open_closed},
+    {"gtr", "gtr:gamma=G", "generalised Trowbridge-Reitz (Burley 2012), G in [1, 10]; 2 is GGX", open_gtr},
+    {"student-t", "student-t:gamma=G",
+     "Student-t slopes (Ribardiere et al. 2017), G in [2, 100]; 2 is GGX, large G Beckmann", open_student_t},
+};
+
+enum { FAMILIES = sizeof families / sizeof families[0] };
+
+size_t lq_ndf_count(void) {
+    return FAMILIES;
+}
+
+const char *lq_ndf_id(size_t i) {
+    return i < FAMILIES ? families[i].id : NULL;
+}
+
+const char *lq_ndf_syntax(size_t i) {
+    return i < FAMILIES ? families[i].syntax : NULL;
+}
+
+const char *lq_ndf_title(size_t i) {
+    return i < FAMILIES ? families[i].title : NULL;
+}
+
+lq_status lq_ndf_open(const lq_ndf **ndf, const char *text, lq_error *error) {
+    const char *colon = strchr(text, ':');
+    const size_t length = colon ? (size_t)(colon - text) : strlen(text);
+    char known[LQ_MESSAGE_SIZE / 2] = "";
+    *ndf = NULL;
+    for (size_t i = 0, used = 0; i < FAMILIES; i++) {
+        const family *f = &families[i];
+        if (strlen(f->id) == length && strncmp(f->id, text, length) == 0)
+            return f->open(ndf, f, colon ? colon + 1 : NULL, error);
+        if (used < sizeof known)
+            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", f->syntax);
+    }
+    return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'; known: %s", text, known);
+}
+
+void lq_ndf_close(const lq_ndf *ndf) {
+    if (ndf && ndf->release) ndf->release((lq_ndf *)ndf);
+}
+
+const char *lq_ndf_text(const lq_ndf *ndf) {
+    return ndf->id;
+}
+
+const char *lq_ndf_note(const lq_ndf *ndf) {
+    return ndf->note;
+}
+
+void lq_ndf_range(const lq_ndf *ndf, double *alpha_min, double *alpha_max) {
+    *alpha_min = ndf->alpha_min;
+    *alpha_max = ndf->alpha_max > 0.0 ? ndf->alpha_max : 1.0;
+}
