@@ -140,12 +140,13 @@ lq_status lq_table_write_npy(const lq_table *table, const char *path, lq_error *
 
 /* Binary layouts that published renderers load (docs/formats.md). None says what it holds: the layout and the
  * kind must be known. A table read from one has the facts of its kind and "layout", but no "tolerance": the
- * file does not say how it was made. */
+ * file does not say how it was made. "ndf" is that the layout is published for; Mitsuba's is for any, and has
+ * no such fact. */
 typedef enum lq_layout {
-    LQ_BELCOUR,        /* sizes, ranges, float32 data, last axis fastest: fgd, tir-pass */
-    LQ_TM,             /* the same with the first axis fastest: fgd, tir-loss, albedo (separable masking) */
-    LQ_MITSUBA,        /* Mitsuba 0.6 .dat, seen from outside: transmission at tau = 1; read only */
-    LQ_MITSUBA_INSIDE, /* its second half, seen from inside: transmission, diffuse-transmission; read only */
+    LQ_BELCOUR, /* sizes, ranges, float32 data, last axis fastest: fgd, tir-pass */
+    LQ_TM,      /* the same with the first axis fastest: fgd, tir-loss, albedo (separable masking) */
+    LQ_MITSUBA, /* Mitsuba 0.6 .dat, seen from outside: transmission at tau = 1; written whole, below */
+    LQ_MITSUBA_INSIDE, /* its second half, seen from inside: transmission, diffuse-transmission */
     LQ_LAYOUTS
 } lq_layout;
 
@@ -158,6 +159,12 @@ lq_status lq_published_read(lq_table **table, const char *path, lq_layout layout
 /* LQ_BAD_INPUT where the layout cannot hold the table: another kind or masking, an axis that is not linear.
  */
 lq_status lq_published_write(const lq_table *table, const char *path, lq_layout layout, lq_error *error);
+/* Mitsuba's .dat holds three tables, in the form lq_published_read gives: `outside`, transmission at tau = 1
+ * over mu, alpha, eta >= 1, all of them power 4 and mu from 0 to 1; `inside`, the same at 1/eta; `diffuse`,
+ * diffuse-transmission at tau = 1 over eta and alpha. The cosine-weighted mean from outside, which the file
+ * has as well, is eta^2 times that from inside (reciprocity). */
+lq_status lq_mitsuba_write(const lq_table *outside, const lq_table *inside, const lq_table *diffuse,
+                           const char *path, lq_error *error);
 /* That question alone, before hours of work; `masking` as in the facts of the table to be, or NULL. */
 lq_status lq_published_check(lq_layout layout, const char *kind, const char *masking, const lq_axis *axes,
                              int axis_count, lq_error *error);
@@ -238,6 +245,8 @@ void lq_ndf_range(const lq_ndf *ndf, double *alpha_min, double *alpha_max);
  *                                      Computation
  * ====================================================================================== */
 
+#define LQ_LOOSEST_TOLERANCE 0.1 /* the largest that can be asked of any kind */
+
 typedef struct lq_settings {
     size_t struct_size; /* sizeof(lq_settings); lq_settings_default sets it */
     const char *ndf;    /* "ggx"; see lq_ndf_open */
@@ -258,7 +267,8 @@ lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double
                   double *estimate, lq_error *error);
 
 /* A whole table over `axes` (one per axis of the kind, in its order and under its names), on all
- * cores. Its facts say how it was made; fact "error" is the largest error estimate over it. */
+ * cores. Its facts say how it was made; fact "error" is the largest error estimate over it, to
+ * which storage in float32 adds fact "rounding". */
 lq_status lq_precompute(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
                         const lq_progress *progress, lq_table **table, lq_error *error);
 
@@ -281,7 +291,8 @@ lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_
  *     value    = clamp(piece's value transform of its streams, value_min, value_max)
  *
  * A factor is one 1D or 2D texture set: `base_count` images over the same texels. End points of an axis sit
- * on texel centres, u = (index (1 - 1/N) + 0.5/N) with index in [0,1], filtering is linear, addressing clamps.
+ * on texel centres, u = (index (1 - 1/N) + 0.5/N) with index in [0,1], filtering is linear, addressing
+ * clamps.
  */
 
 enum { LQ_MAX_STREAMS = 2, LQ_MAX_FACTORS = 8, LQ_MAX_PIECES = 8 };
@@ -289,8 +300,8 @@ enum { LQ_MAX_STREAMS = 2, LQ_MAX_FACTORS = 8, LQ_MAX_PIECES = 8 };
 /* What a texture axis measures, from the table's point x. */
 typedef enum lq_coordinate {
     LQ_COORDINATE_AXIS,     /* x[axis] */
-    LQ_COORDINATE_CRITICAL, /* mu = x[axis] from the critical cosine c = sqrt(max(1 - eta^2, 0)), eta = x[other]:
-                             * mu < c ? mu / c - 1 : (mu - c) / (1 - c), in [-1, 1] */
+    LQ_COORDINATE_CRITICAL, /* mu = x[axis] from the critical cosine c = sqrt(max(1 - eta^2, 0)), eta =
+                             * x[other]: mu < c ? mu / c - 1 : (mu - c) / (1 - c), in [-1, 1] */
     LQ_COORDINATES
 } lq_coordinate;
 

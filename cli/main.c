@@ -17,7 +17,7 @@ static const char usage[] = "Usage: lacquer VERB [arguments]\n"
 
 static const char usage_end[] =
     "\n"
-    "`lacquer VERB --help` shows its options, their defaults and worked examples.\n"
+    "`lacquer VERB --help`, or `lacquer help VERB`, shows its options, their defaults and worked examples.\n"
     "\n"
     "Options:\n"
     "  -h, --help     this text\n"
@@ -56,14 +56,22 @@ static bool asks_help(int argc, char **argv) {
     return false;
 }
 
+/* `help`, or `help VERB`. */
+static int help(int argc, char **argv, const char *known) {
+    const cli_verb *verb = argc > 1 && !is_help(argv[1]) ? cli_verb_find(argv[1]) : NULL;
+    if (argc > 2) return cli_fail("unexpected '%s'; help takes one verb: %s", argv[2], known);
+    if (argc > 1 && !verb && !is_help(argv[1]))
+        return cli_fail("unknown verb '%s'; known: %s", argv[1], known);
+    if (verb) cli_print_help(verb);
+    else print_usage();
+    return CLI_DONE;
+}
+
 static int run(int argc, char **argv) {
     char known[256];
     list_verbs(known, sizeof known);
     if (argc < 2) return cli_fail("no verb; known: %s; see lacquer --help", known);
-    if (is_help(argv[1]) || strcmp(argv[1], "help") == 0) {
-        print_usage();
-        return CLI_DONE;
-    }
+    if (is_help(argv[1]) || strcmp(argv[1], "help") == 0) return help(argc - 1, argv + 1, known);
     if (strcmp(argv[1], "--version") == 0) {
         puts("lacquer " LQ_VERSION);
         return CLI_DONE;

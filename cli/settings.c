@@ -89,9 +89,10 @@ bool cli_settings_suit(const cli_settings *settings, const lq_kind *kind) {
     if (refused) {
         cli_message("%s takes no %s: it is defined for one choice only (%s)", kind->id, refused,
                     kind->quantity);
-    } else if (settings->given[CLI_TOLERANCE - CLI_NDF] && tolerance < kind->finest_tolerance) {
-        cli_message("--tolerance: %s reaches %g to 1, not %s", kind->id, kind->finest_tolerance,
-                    settings->given[CLI_TOLERANCE - CLI_NDF]);
+    } else if (settings->given[CLI_TOLERANCE - CLI_NDF] &&
+               (tolerance < kind->finest_tolerance || tolerance > LQ_LOOSEST_TOLERANCE)) {
+        cli_message("--tolerance: %s accepts %g to %g, not %s", kind->id, kind->finest_tolerance,
+                    LQ_LOOSEST_TOLERANCE, settings->given[CLI_TOLERANCE - CLI_NDF]);
         return false;
     }
     return !refused;

@@ -103,10 +103,10 @@ static int print_json(const char *path, const lq_table *table) {
  *                                         Verb
  * ====================================================================================== */
 
-enum { OPTION_FORMAT = 256, OPTION_LAYOUT, OPTION_KIND };
+enum { OPTION_FORMAT = 256, OPTION_LAYOUT, OPTION_KIND, OPTION_NDF };
 
 typedef struct info_request {
-    const char *path, *kind;
+    const char *path, *kind, *ndf;
     int format, layout; /* layout -1: a file of this program */
 } info_request;
 
@@ -114,6 +114,7 @@ static const cli_option options[] = {
     {OPTION_FORMAT, "format", "text|json", "how to print (default text)"},
     {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table"},
     {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
+    {OPTION_NDF, "ndf", "NDF", "which NDF it was made for, where it is not the one of the layout"},
     {0},
 };
 
@@ -126,6 +127,10 @@ static bool take_option(info_request *request, int id, const char *value) {
         return (request->layout = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS)) >= 0;
     if (id == OPTION_KIND) {
         request->kind = value;
+        return true;
+    }
+    if (id == OPTION_NDF) {
+        request->ndf = value;
         return true;
     }
     if (request->path) cli_message("unexpected '%s'; info takes one FILE", value);
@@ -141,6 +146,8 @@ static bool read_arguments(info_request *request, int argc, char **argv) {
     else if (request->layout >= 0 && !request->kind)
         cli_message("--layout needs --kind: a published file does not say which table it holds");
     else if (request->layout < 0 && request->kind) cli_message("--kind needs --layout");
+    else if (request->layout < 0 && request->ndf)
+        cli_message("--ndf needs --layout: other files say themselves which they are of");
     else return true;
     return false;
 }
@@ -150,11 +157,14 @@ static int run(int argc, char **argv) {
     if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
     lq_table *table = NULL;
     lq_error error = {""};
-    const lq_status status =
-        request.layout < 0
-            ? lq_table_read_exr(&table, request.path, &error)
-            : lq_published_read(&table, request.path, (lq_layout)request.layout, request.kind, &error);
-    if (status != LQ_OK) return cli_fail_status(status, &error);
+    lq_status status = request.layout < 0 ? lq_table_read_exr(&table, request.path, &error)
+                                          : lq_published_read(&table, request.path, (lq_layout)request.layout,
+                                                              request.kind, &error);
+    if (status == LQ_OK && request.ndf) status = lq_table_set_fact(table, "ndf", request.ndf, &error);
+    if (status != LQ_OK) {
+        lq_table_free(table);
+        return cli_fail_status(status, &error);
+    }
     int code = CLI_DONE;
     if (request.format == 1) code = print_json(request.path, table);
     else print_text(request.path, table);

@@ -11,13 +11,14 @@ static void print_ndfs(void) {
 }
 
 static void print_formats(void) {
-    printf("Formats (--format, or the ending of the output file)\n"
-           "  %-15s archive: float32 with axes and provenance; every verb reads it\n"
-           "  %-15s NumPy: float32, C order, last table axis first\n"
-           "  %-15s published binary, last axis fastest: fgd, tir-pass\n"
-           "  %-15s published binary, first axis fastest: fgd, tir-loss, albedo (separable masking)\n"
-           "  %-15s Mitsuba 0.6 .dat, read only: transmission (also mitsuba-inside)\n",
-           "exr", "npy", "belcour", "tm", "mitsuba");
+    printf(
+        "Formats (--format, or the ending of the output file)\n"
+        "  %-15s archive: float32 with axes and provenance; every verb reads it\n"
+        "  %-15s NumPy: float32, C order, last table axis first\n"
+        "  %-15s published binary, last axis fastest: fgd, tir-pass\n"
+        "  %-15s published binary, first axis fastest: fgd, tir-loss, albedo (separable masking)\n"
+        "  %-15s Mitsuba 0.6 .dat: transmission, both sides and their means (its inside: mitsuba-inside)\n",
+        "exr", "npy", "belcour", "tm", "mitsuba");
 }
 
 static int run(int argc, char **argv) {

@@ -89,9 +89,10 @@ static lq_status check_options(const lq_kind *kind, const lq_settings *settings,
 
 static lq_status choose_tolerance(lq_job *job, double asked, lq_error *error) {
     job->tolerance = asked > 0.0 ? asked : job->kind->tolerance;
-    if (!(asked >= 0.0) || job->tolerance < job->kind->finest_tolerance || job->tolerance > 0.1)
-        return lq_fail(error, LQ_BAD_INPUT, "tolerance %g cannot be asked of %s; accepted: %g to 0.1", asked,
-                       job->kind->id, job->kind->finest_tolerance);
+    if (!(asked >= 0.0) || job->tolerance < job->kind->finest_tolerance ||
+        job->tolerance > LQ_LOOSEST_TOLERANCE)
+        return lq_fail(error, LQ_BAD_INPUT, "tolerance %g cannot be asked of %s; accepted: %g to %g", asked,
+                       job->kind->id, job->kind->finest_tolerance, LQ_LOOSEST_TOLERANCE);
     return LQ_OK;
 }
 

@@ -8,10 +8,10 @@
  * variable.
  */
 #include "microfacet/fresnel.h"
+#include "precompute/angle_lobe.h"
 #include "precompute/curves.h"
 #include "precompute/first_bounce.h"
 #include "precompute/kinds.h"
-#include "precompute/lobe.h"
 #include "tables/status.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ static const int resolutions[][2] = {{8, 8}, {12, 10}, {16, 12}, {24, 16}, {32, 
 enum { RESOLUTIONS = sizeof resolutions / sizeof resolutions[0] };
 
 typedef struct resolution {
-    lq_lobe_rule lobe;
+    lq_angle_lobe_rule lobe;
     lq_gauss pass;
 } resolution;
 
@@ -56,7 +56,7 @@ static lq_status prepare(const lq_job *job, void **state, lq_error *error) {
     tir_state *s = malloc(sizeof *s + count * sizeof s->etas[0]);
     if (!s) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu indices", count);
     for (int i = 0; i < RESOLUTIONS; i++) {
-        lq_lobe_rule_make(&s->at[i].lobe, resolutions[i][0], resolutions[i][1]);
+        lq_angle_lobe_rule_make(&s->at[i].lobe, resolutions[i][0], resolutions[i][1]);
         lq_gauss_make(&s->at[i].pass, resolutions[i][0]);
     }
     lq_curves curves;
@@ -78,13 +78,13 @@ static double clamp(double x) {
     return fmin(fmax(x, 0.0), 1.0);
 }
 
-static double loss(const lq_lobe *lobe, double end) {
-    return clamp(1.0 - lq_lobe_below(lobe, end) / lq_lobe_total(lobe));
+static double loss(const lq_angle_lobe *lobe, double end) {
+    return clamp(1.0 - lq_angle_lobe_below(lobe, end) / lq_angle_lobe_total(lobe));
 }
 
 /* Break points of the lobe and of the Fresnel curve up to the critical angle. A break of the lobe just below
  * that angle is left out: it would cut off the panel of the square root. */
-static void pass_panels(const lq_lobe *lobe, const outside *o, lq_panels *panels) {
+static void pass_panels(const lq_angle_lobe *lobe, const outside *o, lq_panels *panels) {
     lq_panels_start(panels, 0.0, o->end);
     panels->singular[1] = o->eta < 1.0;
     lq_panels_add(panels, 0.5 * o->end, false);
@@ -105,10 +105,11 @@ static double passed(double cosine, double eta) {
 
 /* From angle `from` to the critical one in t: sin theta = eta sqrt(1 - t^2). There 1 - F is analytic but for
  * poles near t = -eta (r_p) and |t| = sqrt(1 - eta^2) (the horizon). */
-static double pass_near_critical(const lq_lobe *lobe, const outside *o, double from, const lq_gauss *rule) {
+static double pass_near_critical(const lq_angle_lobe *lobe, const outside *o, double from,
+                                 const lq_gauss *rule) {
     const double eta = o->eta, gap = (1.0 - eta) * (1.0 + eta), s_from = sin(from);
     const double t_max = sqrt(fmax((eta - s_from) * (eta + s_from), 0.0)) / eta;
-    const int first = lq_lobe_panel(lobe, from, 0);
+    const int first = lq_angle_lobe_panel(lobe, from, 0);
     lq_panels panels;
     lq_panels_start(&panels, 0.0, t_max);
     for (double t = fmin(eta, sqrt(gap)); t < t_max; t *= 4.0) lq_panels_add(&panels, t, false);
@@ -119,14 +120,14 @@ static double pass_near_critical(const lq_lobe *lobe, const outside *o, double f
             const double t = lq_panels_map(&panels, p, rule->node[q], &slope);
             const double s = eta * sqrt((1.0 - t) * (1.0 + t)), c = sqrt(gap + eta * eta * t * t);
             const double theta = atan2(s, c);
-            const int at = lq_lobe_panel(lobe, theta, first);
+            const int at = lq_angle_lobe_panel(lobe, theta, first);
             sum += rule->weight[q] * slope * eta * eta * t / (s * c) * passed(t, eta) *
-                   lq_lobe_density(lobe, at, theta);
+                   lq_angle_lobe_density(lobe, at, theta);
         }
     return sum;
 }
 
-static double pass_panel(const lq_lobe *lobe, const outside *o, const lq_panels *panels, int p,
+static double pass_panel(const lq_angle_lobe *lobe, const outside *o, const lq_panels *panels, int p,
                          const lq_gauss *rule, int *at) {
     double sum = 0.0;
     for (int q = 0; q < rule->count; q++) {
@@ -134,13 +135,13 @@ static double pass_panel(const lq_lobe *lobe, const outside *o, const lq_panels 
         const double theta = lq_panels_map(panels, p, rule->node[q], &slope), s = sin(theta);
         const double t = sqrt(fmax((o->eta - s) * (o->eta + s), 0.0)) / o->eta;
         const double through = passed(o->eta < 1.0 ? t : cos(theta), o->eta);
-        *at = lq_lobe_panel(lobe, theta, *at);
-        sum += rule->weight[q] * slope * through * lq_lobe_density(lobe, *at, theta);
+        *at = lq_angle_lobe_panel(lobe, theta, *at);
+        sum += rule->weight[q] * slope * through * lq_angle_lobe_density(lobe, *at, theta);
     }
     return sum;
 }
 
-static double pass(const lq_lobe *lobe, const outside *o, const lq_gauss *rule) {
+static double pass(const lq_angle_lobe *lobe, const outside *o, const lq_gauss *rule) {
     if (o->eta == 0.0) return 0.0;
     if (o->eta == 1.0) return 1.0;
     lq_panels panels;
@@ -150,7 +151,7 @@ static double pass(const lq_lobe *lobe, const outside *o, const lq_gauss *rule) 
     for (int p = 0, at = 0; p <= last; p++)
         sum += o->eta < 1.0 && p == last ? pass_near_critical(lobe, o, panels.at[p], rule)
                                          : pass_panel(lobe, o, &panels, p, rule, &at);
-    return clamp(sum / lq_lobe_total(lobe));
+    return clamp(sum / lq_angle_lobe_total(lobe));
 }
 
 /* ---------------------------------------------------------------------------------- slices */
@@ -174,18 +175,19 @@ static void smooth(const lq_job *job, const tir_state *s, double alpha, double m
     }
 }
 
-static double value_at(const lq_job *job, const tir_state *s, int level, const lq_lobe *lobe, size_t e) {
+static double value_at(const lq_job *job, const tir_state *s, int level, const lq_angle_lobe *lobe,
+                       size_t e) {
     if (counts_fresnel(job)) return pass(lobe, &s->etas[e], &s->at[level].pass);
     return s->etas[e].eta == 0.0 ? 1.0 : loss(lobe, s->etas[e].end);
 }
 
 /* Every eta of one lobe, refined until two resolutions in a row agree. Returns twice their difference. */
-static double converge(const lq_job *job, const tir_state *s, double alpha, double mu, lq_lobe *lobe,
+static double converge(const lq_job *job, const tir_state *s, double alpha, double mu, lq_angle_lobe *lobe,
                        double *values, size_t stride) {
     double estimate = INFINITY;
     for (int level = 0; level < RESOLUTIONS && estimate > job->tolerance; level++) {
         double change = 0.0;
-        lq_lobe_make(lobe, job->ndf, alpha, mu, &s->at[level].lobe);
+        lq_angle_lobe_make(lobe, job->ndf, alpha, mu, &s->at[level].lobe);
         for (size_t e = 0; e < job->size[ETA]; e++) {
             const double now = value_at(job, s, level, lobe, e);
             if (level > 0) change = fmax(change, fabs(now - values[e * stride]));
@@ -201,7 +203,7 @@ static lq_status slice(const lq_job *job, const void *state, size_t index, doubl
     const tir_state *s = state;
     const double alpha = job->nodes[ALPHA][index];
     const size_t count = job->size[MU];
-    lq_lobe *lobe = malloc(sizeof *lobe);
+    lq_angle_lobe *lobe = malloc(sizeof *lobe);
     if (!lobe) return lq_fail(error, LQ_NO_MEMORY, "no memory for a lobe");
     *estimate = 1e-15;
     for (size_t m = 0; m < count; m++) {

@@ -127,10 +127,15 @@ static lq_status set_number(lq_table *table, const char *key, double value, lq_e
     return lq_table_set_fact(table, key, text, error);
 }
 
-/* Three digits, never below the value: an error must not be rounded down. */
+/* Three digits, never below the value, for an error must not be rounded down, and no further above it than
+ * the next of three digits: what kept a tolerance must not seem to break it. */
 static lq_status set_bound(lq_table *table, const char *key, double value, lq_error *error) {
-    return set_number(table, key, value * 1.005, error);
+    const double unit = value > 0.0 ? pow(10.0, floor(log10(value)) - 2.0) : 1.0;
+    return set_number(table, key, ceil(value / unit * (1.0 - 1e-12)) * unit, error);
 }
+
+/* Half a unit in the last place of values up to 1, in float32. */
+static const double storage_rounding = 3e-8;
 
 static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, lq_error *error) {
     const struct {
@@ -154,6 +159,7 @@ static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, 
             status = lq_table_set_fact(table, facts[i].key, facts[i].value, error);
     if (status == LQ_OK) status = set_number(table, "tolerance", job->tolerance, error);
     if (status == LQ_OK) status = set_bound(table, "error", estimate, error);
+    if (status == LQ_OK) status = set_bound(table, "rounding", storage_rounding, error);
     return status;
 }
 
@@ -179,8 +185,7 @@ static lq_status fill(sweep *s, int threads, lq_error *error) {
     double estimate = 0.0;
     for (size_t i = 0; i < slices; i++) estimate = fmax(estimate, s->estimates[i]);
     free(s->estimates);
-    /* Values are stored in float32: half a unit in the last place of 1. */
-    if (s->status == LQ_OK) s->status = set_facts(s->table, s->job, estimate + 3e-8, error);
+    if (s->status == LQ_OK) s->status = set_facts(s->table, s->job, estimate, error);
     if (s->status == LQ_OK && estimate > s->job->tolerance)
         s->status = lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g",
                             estimate, s->job->tolerance);

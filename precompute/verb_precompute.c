@@ -7,6 +7,7 @@
 #include "cli/settings.h"
 #include "cli/verb.h"
 #include "lacquer.h"
+#include "precompute/verb_precompute_mitsuba.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +15,16 @@
 
 enum { OPTION_AXIS = 256, OPTION_FORMAT, OPTION_OUTPUT = 'o' };
 /* The first two follow from the ending of a file, the published layouts do not. */
-enum { FORMAT_EXR, FORMAT_NPY, FORMAT_BELCOUR, FORMAT_TM, FORMATS, FORMAT_ENDINGS = FORMAT_BELCOUR };
-static const char *const formats[FORMATS] = {"exr", "npy", "belcour", "tm"};
+enum {
+    FORMAT_EXR,
+    FORMAT_NPY,
+    FORMAT_BELCOUR,
+    FORMAT_TM,
+    FORMAT_MITSUBA,
+    FORMATS,
+    FORMAT_ENDINGS = FORMAT_BELCOUR
+};
+static const char *const formats[FORMATS] = {"exr", "npy", "belcour", "tm", "mitsuba"};
 
 /* Why this is more than LQ_MAX_AXES: a fifth --axis must be refused by its name. */
 enum { MAX_AXIS_OPTIONS = 2 * LQ_MAX_AXES };
@@ -85,7 +94,7 @@ static bool find_format(table_request *request) {
     for (request->format = 0; request->format < FORMAT_ENDINGS; request->format++)
         if (dot && strcasecmp(dot + 1, formats[request->format]) == 0) return true;
     cli_message("%s: the format does not follow from the name; end it in .exr or .npy, or add --format "
-                "exr|npy|belcour|tm",
+                "exr|npy|belcour|tm|mitsuba",
                 request->output);
     return false;
 }
@@ -135,10 +144,15 @@ static void free_axes(const lq_kind *kind, lq_axis *axes) {
     for (int i = 0; i < kind->axis_count; i++) lq_axis_free(&axes[i]);
 }
 
+static bool is_mitsuba(const table_request *request, const lq_kind *kind) {
+    return request->format == FORMAT_MITSUBA && strcmp(kind->id, "transmission") == 0;
+}
+
 static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis *axes) {
     bool given[LQ_MAX_AXES] = {false};
     lq_error error = {""};
     lq_status status = lq_kind_axes(kind, axes, &error);
+    if (status == LQ_OK && is_mitsuba(request, kind)) status = precompute_mitsuba_axes(axes, &error);
     if (status != LQ_OK) {
         cli_message("%s", error.text);
         return false;
@@ -202,10 +216,27 @@ static bool format_suits(const table_request *request, const lq_kind *kind, cons
     const char *masking = kind->takes & LQ_TAKES_MASKING ? separable ? "separable" : "correlated" : NULL;
     lq_error error = {""};
     if (request->format < FORMAT_BELCOUR) return true;
-    const lq_layout layout = request->format == FORMAT_TM ? LQ_TM : LQ_BELCOUR;
+    static const lq_layout layouts[FORMATS] = {
+        [FORMAT_BELCOUR] = LQ_BELCOUR, [FORMAT_TM] = LQ_TM, [FORMAT_MITSUBA] = LQ_MITSUBA};
+    const lq_layout layout = layouts[request->format];
     if (lq_published_check(layout, kind->id, masking, axes, kind->axis_count, &error) == LQ_OK) return true;
     cli_message("%s", error.text);
     return false;
+}
+
+/* All of a Mitsuba file at once: three tables make one. */
+static int precompute_file(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
+    lq_error error = {""};
+    size_t entries;
+    double estimate;
+    const double start = cli_seconds();
+    const lq_status status = precompute_mitsuba(kind, &request->settings.settings, axes, request->output,
+                                                &entries, &estimate, &error);
+    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return cli_fail_status(status, &error);
+    printf("%s: %zu entries, error at most %.3g, %.3g s\n", request->output, entries, estimate,
+           cli_seconds() - start);
+    if (status != LQ_OK) cli_message("%s", error.text);
+    return status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
 }
 
 static int precompute(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
@@ -245,7 +276,9 @@ static int run(int argc, char **argv) {
     int code = CLI_FAILED;
     if (format_suits(&request, kind, axes)) {
         request.command = write_command(&request);
-        code = request.command ? precompute(&request, kind, axes) : cli_fail("out of memory");
+        if (!request.command) code = cli_fail("out of memory");
+        else if (is_mitsuba(&request, kind)) code = precompute_file(&request, kind, axes);
+        else code = precompute(&request, kind, axes);
     }
     free(request.command);
     free_axes(kind, axes);
@@ -254,7 +287,8 @@ static int run(int argc, char **argv) {
 
 static const cli_option options[] = {
     {OPTION_OUTPUT, "output", "FILE", "where to write (required); the ending .exr or .npy picks the format"},
-    {OPTION_FORMAT, "format", "exr|npy|belcour|tm", "the format, whatever the ending; see lacquer list"},
+    {OPTION_FORMAT, "format", "exr|npy|belcour|tm|mitsuba",
+     "the format, whatever the ending; see lacquer list"},
     {OPTION_AXIS, "axis", "NAME=MIN:MAX:N[:MAP]", "nodes of one axis (default: below); may be repeated"},
     CLI_SETTINGS_OPTIONS,
     CLI_THREADS_OPTION,
@@ -280,6 +314,7 @@ const cli_verb cli_verb_precompute = {
                 "lacquer precompute fgd -o fgd.exr\n"
                 "lacquer precompute fgd --axis mu=0:1:32:sqrt --axis n=0.2 --axis kappa=3.9 -o silver.exr\n"
                 "lacquer precompute dfg --tolerance 1e-7 -o dfg.npy\n"
-                "lacquer precompute tir-pass --format belcour -o TIR.bin",
+                "lacquer precompute tir-pass --format belcour -o TIR.bin\n"
+                "lacquer precompute transmission --format mitsuba -o ggx.dat",
     .run = run,
 };

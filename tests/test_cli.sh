@@ -52,6 +52,9 @@ for verb in list eval precompute validate info bench; do
     run 0 "$verb" --help
     grep -q '^Examples:' files/out || fail "$verb --help shows no examples"
     [ ! -s files/err ] || fail "$verb --help wrote to stderr"
+    mv files/out files/help
+    run 0 help "$verb"
+    cmp -s files/help files/out || fail "help $verb is not $verb --help"
 done
 run 0 list
 for id in fgd albedo albedo-average dfg ggx exr npy; do
@@ -84,6 +87,8 @@ refused "unexpected 'mu'" eval fgd mu
 refused 'needs a value' eval fgd "${point[@]}" --tolerance
 refused "'0' is not a number from" eval fgd "${point[@]}" --tolerance 0
 refused "'tiny' is not a number" eval fgd "${point[@]}" --tolerance tiny
+refused 'accepts 1e-08 to 0.1, not 0.5' eval fgd "${point[@]}" --tolerance 0.5
+refused "unknown verb 'evil'; known: list" help evil
 refused 'tolerance.*1e-14' eval fgd "${point[@]}" --tolerance 1e-14
 refused "unknown NDF 'phong'; known: ggx, beckmann" eval fgd "${point[@]}" --ndf phong
 refused 'single, multiple' eval fgd "${point[@]}" --scattering double

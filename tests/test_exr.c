@@ -18,20 +18,10 @@
 #include <unistd.h>
 
 #include "lacquer.h"
-
-static char folder[] = "/tmp/lacquer-test-exr-XXXXXX";
+#include "tests/scratch.h"
 
 static void assert_contains(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("'%s' does not contain '%s'", text, part);
-}
-
-/* The path of `name` in the folder of this test; a few may be in use at once. */
-static const char *at(const char *name) {
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
 }
 
 static unsigned char *slurp(const char *path, size_t *size) {
@@ -52,16 +42,6 @@ static void spill(const char *path, const void *bytes, size_t size) {
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, size, file), size);
     assert_int_equal(fclose(file), 0);
-}
-
-static int files_in_folder(void) {
-    int count = 0;
-    DIR *list = opendir(folder);
-    assert_non_null(list);
-    for (struct dirent *entry; (entry = readdir(list));)
-        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0) count++;
-    closedir(list);
-    return count;
 }
 
 static void expect_refused(const char *path, lq_status status, const char *part) {
@@ -516,18 +496,13 @@ static void test_failed_writes_leave_nothing(void **state) {
     lq_table_free(table);
 }
 
-static int make_folder(void **state) {
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
+/* Damaged files of the tests are left to this. */
+static int clear_folder(void **state) {
     DIR *list = opendir(folder);
     if (!list) return -1;
     for (struct dirent *entry; (entry = readdir(list));) unlink(at(entry->d_name));
     closedir(list);
-    return rmdir(folder);
+    return remove_folder(state);
 }
 
 int main(void) {
@@ -549,5 +524,5 @@ int main(void) {
         cmocka_unit_test(test_not_exr),
         cmocka_unit_test(test_failed_writes_leave_nothing),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, clear_folder);
 }

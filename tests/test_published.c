@@ -91,7 +91,8 @@ static void what_a_layout_cannot_hold_is_refused(void **state) {
     refuse_write(LQ_BELCOUR, "tir-pass", LQ_MAP_SQRT, "alpha has 3, sqrt");
     refuse_write(LQ_BELCOUR, "fgd", LQ_MAP_LINEAR, "over 4 axes, not 3");
     refuse_write(LQ_TM, "albedo", LQ_MAP_LINEAR, "separable masking");
-    refuse_write(LQ_MITSUBA, "transmission", LQ_MAP_LINEAR, "read only");
+    refuse_write(LQ_MITSUBA, "transmission", LQ_MAP_LINEAR, "over 4 axes, not 3");
+    refuse_write(LQ_MITSUBA_INSIDE, "transmission", LQ_MAP_LINEAR, "written whole as mitsuba");
 }
 
 static void refuse_read(const char *kind, const void *bytes, size_t size, const char *says) {
@@ -218,6 +219,42 @@ static void damaged_mitsuba_files_are_refused(void **state) {
         }
 }
 
+/* Where the outside mean is eta^2 times the inside one, the file comes back as it was. */
+static void a_mitsuba_file_is_written_as_it_was_read(void **state) {
+    (void)state;
+    unsigned char bytes[HEAD + 4 * CELLS], again[HEAD + 4 * CELLS + 1];
+    const size_t size = make_mitsuba(bytes);
+    for (int row = 0; row < ETAS * ALPHAS; row++) {
+        const float eta = row < ALPHAS ? 1.25f : 4.0f;
+        const float inside = 0.03125f * (float)(row % ALPHAS), outside = eta * eta * inside;
+        memcpy(bytes + HEAD + 4 * (row * ROW + COSINES), &outside, 4);
+        memcpy(bytes + HEAD + 4 * ((ETAS * ALPHAS + row) * ROW + COSINES), &inside, 4);
+    }
+    write_bytes(bytes, size);
+    lq_table *outside = read_mitsuba(LQ_MITSUBA, "transmission");
+    lq_table *inside = read_mitsuba(LQ_MITSUBA_INSIDE, "transmission");
+    lq_table *diffuse = read_mitsuba(LQ_MITSUBA_INSIDE, "diffuse-transmission");
+    lq_error error = {""};
+    assert_null(lq_table_fact(outside, "ndf"));
+    remove(file);
+    assert_int_equal(lq_mitsuba_write(outside, inside, diffuse, file, &error), LQ_OK);
+    assert_int_equal(read_bytes(again, sizeof again), size);
+    assert_memory_equal(again, bytes, size);
+    remove(file);
+    assert_int_equal(lq_mitsuba_write(inside, outside, diffuse, file, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "map power4; eta has 2, custom"));
+    assert_int_equal(lq_mitsuba_write(outside, outside, diffuse, file, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "inside table"));
+    assert_int_equal(lq_mitsuba_write(outside, inside, inside, file, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "diffuse table"));
+    assert_int_equal(lq_published_write(outside, file, LQ_MITSUBA, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "three tables"));
+    assert_int_not_equal(access(file, F_OK), 0);
+    lq_table_free(outside);
+    lq_table_free(inside);
+    lq_table_free(diffuse);
+}
+
 static int clean(void **state) {
     (void)state;
     remove(file);
@@ -242,6 +279,7 @@ int main(void) {
         cmocka_unit_test_teardown(what_a_layout_cannot_hold_is_refused, clean),
         cmocka_unit_test_teardown(damaged_files_are_refused, clean),
         cmocka_unit_test_teardown(mitsuba_blocks_become_tables, clean),
+        cmocka_unit_test_teardown(a_mitsuba_file_is_written_as_it_was_read, clean),
         cmocka_unit_test_teardown(damaged_mitsuba_files_are_refused, clean),
     };
     return cmocka_run_group_tests(tests, move_to_scratch, remove_scratch);

@@ -19,28 +19,10 @@
 
 #include "lacquer.h"
 #include "tables/output.h"
-
-static char folder[] = "/tmp/lacquer-test-out-XXXXXX";
+#include "tests/scratch.h"
 
 static void assert_contains(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("'%s' does not contain '%s'", text, part);
-}
-
-static const char *at(const char *name) {
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int files(void) {
-    int count = 0;
-    DIR *list = opendir(folder);
-    assert_non_null(list);
-    for (struct dirent *entry; (entry = readdir(list));) count++;
-    closedir(list);
-    return count - 2;
 }
 
 static void write_old(const char *path) {
@@ -78,7 +60,7 @@ static void test_commit_replaces(void **state) {
     assert_holds(at("a"), "old"); /* until the commit */
     assert_int_equal(lq_output_commit(output, NULL), LQ_OK);
     assert_holds(at("a"), "42 bytes");
-    assert_int_equal(files(), 1);
+    assert_int_equal(files_in_folder(), 1);
     unlink(at("a"));
 }
 
@@ -87,7 +69,7 @@ static void test_new_file_has_umask_permissions(void **state) {
     mode_t old = umask(027);
     lq_output *output = open_output(at("b"));
     umask(old);
-    assert_int_equal(files(), 0); /* unnamed so far */
+    assert_int_equal(files_in_folder(), 0); /* unnamed so far */
     assert_int_equal(lq_output_write_at(output, "xyz", 3, 3, NULL), LQ_OK);
     assert_int_equal(lq_output_write_at(output, "abc", 3, 0, NULL), LQ_OK);
     assert_int_equal(lq_output_commit(output, NULL), LQ_OK);
@@ -177,7 +159,7 @@ static void test_abandon(void **state) {
     lq_output_abandon(output);
     lq_output_abandon(NULL);
     assert_holds(at("d"), "old");
-    assert_int_equal(files(), 1);
+    assert_int_equal(files_in_folder(), 1);
     unlink(at("d"));
 }
 
@@ -203,7 +185,7 @@ static void test_refused_targets(void **state) {
     refuse_open(at("file/x"), "/file' is not a folder");
     refuse_open(at(name), "too long");
     unlink(at("file"));
-    assert_int_equal(files(), 0);
+    assert_int_equal(files_in_folder(), 0);
 }
 
 /* What root may not be refused, another user is: 77 stands for "could not become one". */
@@ -273,7 +255,7 @@ static void test_full_disk(void **state) {
         assert_int_equal(npy_status, LQ_IO);
         assert_contains(exr.text, "/t: cannot write: File too large; accepted is a place with room");
         assert_contains(npy.text, "/t: cannot write: File too large; accepted is a place with room");
-        assert_int_equal(files(), 1);
+        assert_int_equal(files_in_folder(), 1);
         assert_holds(at("t"), "old");
     }
     unlink(at("t"));
@@ -312,7 +294,7 @@ static void test_killed(void **state) {
     int result;
     assert_int_equal(waitpid(child, &result, 0), child);
     assert_true(WIFSIGNALED(result));
-    assert_int_equal(files(), 1);
+    assert_int_equal(files_in_folder(), 1);
     assert_holds(at("k"), "old");
     unlink(at("k"));
 }
@@ -331,17 +313,7 @@ static void test_target_changes(void **state) {
     assert_int_equal(lq_output_commit(output, &error), LQ_IO);
     assert_contains(error.text, "Is a directory");
     assert_int_equal(rmdir(at("x")), 0);
-    assert_int_equal(files(), 0);
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    return rmdir(folder); /* fails where anything was left */
+    assert_int_equal(files_in_folder(), 0);
 }
 
 int main(void) {

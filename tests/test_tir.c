@@ -4,7 +4,7 @@
 
 #include "lacquer.h"
 #include "microfacet/fresnel.h"
-#include "precompute/lobe.h"
+#include "precompute/angle_lobe.h"
 #include "validate/stream.h"
 #include "validate/walk_kind.h"
 
@@ -84,9 +84,9 @@ static void its_energy_is_the_albedo(void **state) {
     static const double alphas[] = {1e-6, 1e-4, 1e-2, 0.1, 0.4, 1.0},
                         cosines[] = {0.0, 1e-6, 1e-3, 0.05, 0.5, 1.0};
     const lq_ndf *ggx = lq_ndf_find("ggx");
-    lq_lobe *lobe = malloc(sizeof *lobe);
-    lq_lobe_rule rule;
-    lq_lobe_rule_make(&rule, 32, 24);
+    lq_angle_lobe *lobe = malloc(sizeof *lobe);
+    lq_angle_lobe_rule rule;
+    lq_angle_lobe_rule_make(&rule, 32, 24);
     for (size_t a = 0; a < 6; a++)
         for (size_t m = 0; m < 6; m++) {
             lq_settings settings = lq_settings_default();
@@ -96,9 +96,9 @@ static void its_energy_is_the_albedo(void **state) {
             settings.masking = LQ_SEPARABLE;
             settings.tolerance = 1e-8;
             lq_eval(lq_kind_find("albedo", &error), &settings, point, &albedo, &estimate, &error);
-            lq_lobe_make(lobe, ggx, alpha, mu, &rule);
+            lq_angle_lobe_make(lobe, ggx, alpha, mu, &rule);
             const double sigma = lq_area_above(ggx, alpha, mu, lq_sine(mu));
-            assert_near(lq_lobe_total(lobe) / sigma, albedo, 1e-7 + estimate);
+            assert_near(lq_angle_lobe_total(lobe) / sigma, albedo, 1e-7 + estimate);
         }
     free(lobe);
 }

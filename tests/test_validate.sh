@@ -75,8 +75,28 @@ for kind in fgd-dielectric transmission diffuse-transmission diffuse-reflection 
     run 0 validate $kind.exr --against walk --points 24 --samples 10000
     says '^exact - walk +[0-9]'
 done
-run 0 precompute fgd-dielectric --scattering single "${looked_up[@]}" -o once.exr
-run 0 validate once.exr --against walk --points 12 --samples 10000
+for kind in fgd-dielectric transmission; do
+    run 0 precompute $kind --scattering single "${looked_up[@]}" -o once.exr
+    run 0 validate once.exr --against walk --points 24 --samples 10000
+done
+run 0 precompute coated-lambertian --axis mu=0,0.1,1 "${rough[@]}" "${absorbing[@]}" --axis rho=0,0.7,1 -o coated.exr
+run 0 validate coated.exr --against walk --points 16 --samples 4000
+
+# a Mitsuba file in one command, each of its parts against the solver: the cosine-weighted means are a quadrature
+# of the file's own, the kind diffuse-transmission another
+run 0 precompute transmission --format mitsuba --axis mu=0:1:9:power4 --axis alpha=0:1:4:power4 \
+    --axis eta=1:3:3:power4 -o ggx.dat
+for layout in mitsuba mitsuba-inside; do
+    run 0 validate ggx.dat --layout $layout --kind transmission
+    says '^passed$'
+done
+run 0 validate ggx.dat --layout mitsuba-inside --kind diffuse-transmission --budget 1e-5
+run 0 info ggx.dat --layout mitsuba --kind transmission --ndf beckmann
+says 'ndf +beckmann'
+refused 'tau = 1 alone' precompute transmission --format mitsuba --axis tau=0:1:3 -o no.dat
+refused 'eta >= 1' precompute transmission --format mitsuba --axis eta=0.5:3:3:power4 -o no.dat
+refused 'stores no fgd' precompute fgd --format mitsuba -o no.dat
+[ ! -e no.dat ] || fail "a refused file was written"
 
 # --------------------------------------------------------------------------------- tables that are not
 # the linear interpolation of a coarse table is far above any budget

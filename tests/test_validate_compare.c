@@ -158,13 +158,11 @@ static void test_compare_tables(void **state) {
     }
 }
 
-/* Every kind of the catalogue has a walk but `coated-lambertian`, a formula of three that have; and at alpha
- * 1, mu 1 they give numbers known from H16. */
+/* Every kind of the catalogue has a walk; and at alpha 1, mu 1 they give numbers known from H16. */
 static void test_kinds_have_walks(void **state) {
     (void)state;
     const lq_walk_run run = {.samples = 20000, .seed = 3, .threads = 1};
-    for (size_t i = 0; i < lq_kind_count(); i++)
-        assert_true(lq_walk_knows(lq_kind_at(i)) == (strcmp(lq_kind_at(i)->id, "coated-lambertian") != 0));
+    for (size_t i = 0; i < lq_kind_count(); i++) assert_true(lq_walk_knows(lq_kind_at(i)));
     const lq_settings settings = lq_settings_default();
     const double point[2] = {1.0, 1.0};
     lq_walk_mean values[LQ_MAX_CHANNELS], a, average;

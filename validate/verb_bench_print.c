@@ -24,7 +24,7 @@ static void describe_machine(const bench_job *job, char *text) {
             break;
         }
     if (file) fclose(file);
-    snprintf(text, LINE, "lacquer %s, %d thread%s of %.100s", LQ_VERSION, job->threads,
+    snprintf(text, LINE, "lacquer %s%s, %d thread%s of %.100s", LQ_VERSION, LACQUER_COMMIT, job->threads,
              job->threads == 1 ? "" : "s", name);
 }
 

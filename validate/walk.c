@@ -111,6 +111,8 @@ lq_status lq_walk_check(const lq_walk *walk, lq_error *error) {
     if (!in_range(walk->tau_near, 0.0, 1.0) || !in_range(walk->tau_far, 0.0, 1.0))
         return lq_fail(error, LQ_BAD_INPUT, "random walk: transmittances %g, %g are not both in [0, 1]",
                        walk->tau_near, walk->tau_far);
+    if (!in_range(walk->rho, 0.0, 1.0))
+        return lq_fail(error, LQ_BAD_INPUT, "random walk: albedo %g of the base is not in [0, 1]", walk->rho);
     if (walk->samples == 0 || walk->samples > LQ_WALK_MAX_SAMPLES)
         return lq_fail(error, LQ_BAD_INPUT, "random walk: %zu samples, accepted are 1 to %zu", walk->samples,
                        (size_t)LQ_WALK_MAX_SAMPLES);

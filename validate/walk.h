@@ -31,6 +31,8 @@ typedef struct lq_walk {
      * at cosine c costs tau^(1/c): on the way in and out on the near side, on the way out on the far side.
      * T01(tau) is near 1, far tau; T10 and R10 of the base (cosine set, eta from below) near tau, far 1. */
     double tau_near, tau_far;
+    bool once;  /* two-sided walk: what would meet a second facet is lost */
+    double rho; /* lq_walk_coated: albedo of the base */
     size_t samples;
     uint64_t seed, purpose; /* walks that must not share random numbers differ in one of them */
     int threads;            /* 0: one per core */
@@ -66,5 +68,10 @@ typedef struct lq_walk_sides {
 
 /* Reflects or refracts at each hit; fresnel must be LQ_WALK_DIELECTRIC. Every sample conserves energy. */
 lq_status lq_walk_two_sided(const lq_walk *walk, lq_walk_sides *sides, lq_error *error);
+
+/* A Lambertian base of albedo rho under the interface, with a medium of transmittance tau_far between: light
+ * is followed through every bounce between the two (D22 sec. 3.1). `albedo` is all that leaves on the near
+ * side. */
+lq_status lq_walk_coated(const lq_walk *walk, lq_walk_mean *albedo, lq_error *error);
 
 #endif

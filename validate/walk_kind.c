@@ -64,7 +64,8 @@ static lq_status walk_sides(lq_walk *walk, lq_walk_sides *sides, lq_error *error
     return lq_walk_two_sided(walk, sides, error);
 }
 
-/* Of one hit: what is reflected. The walk knows no single refraction. */
+/* Of one hit, the walk above the surface does: it weighs by masking, where that of both sides counts who gets
+ * away. */
 static lq_status walk_fgd_dielectric(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
                                      lq_error *error) {
     if (settings->scattering == LQ_SINGLE) {
@@ -79,8 +80,7 @@ static lq_status walk_fgd_dielectric(lq_walk *walk, const lq_settings *settings,
 
 static lq_status walk_transmission(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
                                    lq_error *error) {
-    if (settings->scattering == LQ_SINGLE)
-        return lq_fail(error, LQ_BAD_INPUT, "no random walk is known for single scattering in transmission");
+    walk->once = settings->scattering == LQ_SINGLE;
     lq_walk_sides sides;
     const lq_status status = walk_sides(walk, &sides, error);
     if (status == LQ_OK) values[0] = sides.transmitted;
@@ -131,6 +131,14 @@ static lq_status walk_variance(lq_walk *walk, const lq_settings *settings, lq_wa
     return status;
 }
 
+static lq_status walk_coated(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values,
+                             lq_error *error) {
+    (void)settings;
+    walk->fresnel = LQ_WALK_DIELECTRIC;
+    if (walk->alpha > 0.0) walk->mu = fmax(walk->mu, grazing);
+    return lq_walk_coated(walk, values, error);
+}
+
 static const struct {
     const char *id;
     lq_status (*run)(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values, lq_error *error);
@@ -146,6 +154,7 @@ static const struct {
     {"diffuse-transmission", walk_diffuse_transmission},
     {"diffuse-reflection", walk_diffuse_reflection},
     {"variance", walk_variance},
+    {"coated-lambertian", walk_coated},
 };
 
 enum { WALKS = sizeof walks / sizeof walks[0] };
@@ -174,6 +183,7 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     walk.n = coordinate(kind, point, "n", coordinate(kind, point, "eta", 1.0));
     walk.kappa = coordinate(kind, point, "kappa", 0.0);
     walk.tau_far = coordinate(kind, point, "tau", 1.0);
+    walk.rho = coordinate(kind, point, "rho", 0.0);
     walk.samples = run->samples;
     walk.seed = run->seed;
     walk.purpose = run->purpose;

@@ -18,6 +18,7 @@ enum { MAX_BRANCHES = 512 };
 typedef struct branch {
     lq_ray ray;
     int side; /* 0 near, 1 far */
+    int hits;
 } branch;
 
 typedef struct context {
@@ -58,6 +59,7 @@ static bool hit(const context *c, branch *b, branch *other, lq_stream *stream) {
     lq_visible_sample(&c->visible, -b->ray.z, b->ray.s, stream, &facet);
     double cos_t;
     const double eta = c->eta[b->side];
+    b->hits++;
     const double f = lq_fresnel_dielectric(fmin(facet.cosine, 1.0), eta, &cos_t);
     const double reflected = b->ray.weight * f;
     const double refracted = b->ray.weight - reflected;
@@ -81,18 +83,24 @@ static void leave(const context *c, const branch *b, double *values) {
     values[SIN2 + b->side] += energy * sin2;
 }
 
-static void follow(const context *c, branch *stack, lq_stream *stream, double *values) {
+/* To the next hit; false where there is none to count: the ray has left, or its one hit is behind it. */
+static bool travel(const context *c, branch *b, lq_stream *stream, double *values) {
     const lq_walk *walk = c->walk;
+    const bool over = walk->once && b->hits > 0;
+    if (b->ray.z >= 0.0) {
+        const bool leaves = lq_ray_rise(&b->ray, walk->ndf, walk->alpha, stream);
+        if (leaves) leave(c, b, values);
+        return !leaves && !over;
+    }
+    if (!over) lq_ray_descend(&b->ray, walk->ndf, walk->alpha, stream);
+    return !over;
+}
+
+static void follow(const context *c, branch *stack, lq_stream *stream, double *values) {
     for (int waiting = 1; waiting > 0;) {
         branch *b = &stack[waiting - 1];
-        if (b->ray.z < 0.0) {
-            lq_ray_descend(&b->ray, walk->ndf, walk->alpha, stream);
-        } else if (lq_ray_rise(&b->ray, walk->ndf, walk->alpha, stream)) {
-            leave(c, b, values);
-            waiting--;
-            continue;
-        }
-        if (hit(c, b, &stack[waiting], stream)) waiting++;
+        if (!travel(c, b, stream, values)) waiting--;
+        else if (hit(c, b, &stack[waiting], stream)) waiting++;
     }
 }
 
@@ -138,22 +146,75 @@ static lq_walk_mean ratio(lq_walk_mean y, lq_walk_mean x, lq_walk_mean sum) {
     return r;
 }
 
-lq_status lq_walk_two_sided(const lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
-    lq_status status = lq_walk_check(walk, error);
-    if (status != LQ_OK) return status;
-    if (walk->fresnel != LQ_WALK_DIELECTRIC || !(walk->n > 0.0))
-        return lq_fail(error, LQ_BAD_INPUT, "two-sided random walk: needs a dielectric of index > 0");
-    context c = {
+/* An interface between equal media is none, however often a grazing ray would have to cross it. */
+static bool is_rough(const lq_walk *walk) {
+    return walk->alpha > 0.0 && walk->n != 1.0;
+}
+
+static void prepare(context *c, const lq_walk *walk) {
+    *c = (context){
         .walk = walk, .eta = {walk->n, 1.0 / walk->n}, .log_tau = {log(walk->tau_near), log(walk->tau_far)}};
-    /* An interface between equal media is none, however often a grazing ray would have to cross it. */
-    const bool rough = walk->alpha > 0.0 && walk->n != 1.0;
-    if (rough) lq_visible_make(&c.visible, walk->ndf, walk->alpha, true);
+    if (is_rough(walk)) lq_visible_make(&c->visible, walk->ndf, walk->alpha, true);
+}
+
+static lq_status check(const lq_walk *walk, lq_error *error) {
+    const lq_status status = lq_walk_check(walk, error);
+    if (status == LQ_OK && (walk->fresnel != LQ_WALK_DIELECTRIC || !(walk->n > 0.0)))
+        return lq_fail(error, LQ_BAD_INPUT, "two-sided random walk: needs a dielectric of index > 0");
+    return status;
+}
+
+lq_status lq_walk_two_sided(const lq_walk *walk, lq_walk_sides *sides, lq_error *error) {
+    lq_status status = check(walk, error);
+    if (status != LQ_OK) return status;
+    context c;
     lq_walk_mean m[VALUES];
-    status = lq_walk_reduce(walk, rough ? sample_rough : sample_smooth, &c, VALUES, m, error);
+    prepare(&c, walk);
+    status = lq_walk_reduce(walk, is_rough(walk) ? sample_rough : sample_smooth, &c, VALUES, m, error);
     if (status != LQ_OK) return status;
     sides->reflected = m[ENERGY];
     sides->transmitted = m[ENERGY + 1];
     sides->reflected_sin2 = ratio(m[SIN2], m[ENERGY], m[SUM]);
     sides->transmitted_sin2 = ratio(m[SIN2 + 1], m[ENERGY + 1], m[SUM + 1]);
     return LQ_OK;
+}
+
+/* ------------------------------------------------------------------------------- coated base */
+
+typedef struct coated {
+    context outside, inside; /* the interface as light from above and from the base meets it */
+    lq_walk_sample *meet;
+    double rho;
+} coated;
+
+/* What a path still carries below this plays Russian roulette. */
+static const double faint = 0.05;
+
+static void sample_coated(const void *data, lq_stream *stream, double *values) {
+    const coated *c = data;
+    double meeting[VALUES] = {0.0};
+    c->meet(&c->outside, stream, meeting);
+    values[0] = meeting[ENERGY];
+    double carried = c->rho * meeting[ENERGY + 1];
+    while (carried > 0.0) {
+        if (carried < faint) carried = lq_stream_uniform(stream) * faint < carried ? faint : 0.0;
+        for (int i = 0; i < VALUES; i++) meeting[i] = 0.0;
+        c->meet(&c->inside, stream, meeting);
+        values[0] += carried * meeting[ENERGY + 1];
+        carried *= c->rho * meeting[ENERGY];
+    }
+}
+
+lq_status lq_walk_coated(const lq_walk *walk, lq_walk_mean *albedo, lq_error *error) {
+    const lq_status status = check(walk, error);
+    if (status != LQ_OK) return status;
+    lq_walk back = *walk;
+    back.cosine = true;
+    back.n = 1.0 / walk->n;
+    back.tau_near = walk->tau_far;
+    back.tau_far = walk->tau_near;
+    coated c = {.meet = is_rough(walk) ? sample_rough : sample_smooth, .rho = walk->rho};
+    prepare(&c.outside, walk);
+    prepare(&c.inside, &back);
+    return lq_walk_reduce(walk, sample_coated, &c, 1, albedo, error);
 }

@@ -1,5 +1,5 @@
 /* The lobe of a rough mirror: rings of azimuth at Chebyshev angles, and the series through them. */
-#include "precompute/lobe.h"
+#include "precompute/angle_lobe.h"
 
 #include "microfacet/panels.h"
 
@@ -70,7 +70,7 @@ static double density_at(const lq_ndf *ndf, double alpha, double theta_i, double
 
 /* --------------------------------------------------------------------------------- series */
 
-void lq_lobe_rule_make(lq_lobe_rule *rule, int terms, int ring_nodes) {
+void lq_angle_lobe_rule_make(lq_angle_lobe_rule *rule, int terms, int ring_nodes) {
     rule->terms = terms;
     lq_gauss_make(&rule->ring, ring_nodes);
     for (int j = 0; j < terms; j++) rule->node[j] = -cos(pi * (j + 0.5) / terms);
@@ -80,7 +80,7 @@ void lq_lobe_rule_make(lq_lobe_rule *rule, int terms, int ring_nodes) {
 }
 
 /* Values at the nodes to coefficients; the first one is stored halved, as a sum wants it. */
-static void fit_series(const lq_lobe_rule *rule, const double *values, double *series) {
+static void fit_series(const lq_angle_lobe_rule *rule, const double *values, double *series) {
     const int n = rule->terms;
     for (int k = 0; k < n; k++) {
         double sum = 0.0;
@@ -113,7 +113,7 @@ static double sum_series(const double *series, int n, double x) {
 }
 
 /* Position on a panel, in [-1,1]. */
-static double on_panel(const lq_lobe *lobe, int panel, double theta) {
+static double on_panel(const lq_angle_lobe *lobe, int panel, double theta) {
     const double from = lobe->at[panel], to = lobe->at[panel + 1];
     return fmin(fmax((2.0 * theta - from - to) / (to - from), -1.0), 1.0);
 }
@@ -122,18 +122,19 @@ static double on_panel(const lq_lobe *lobe, int panel, double theta) {
 
 /* The nearest poles of p are 2 alpha off the peak (GGX: tan(theta_o - theta_i)/2 = i alpha) and alpha off
  * the horizon (masking). */
-static void place_panels(lq_lobe *lobe, double alpha, double theta) {
+static void place_panels(lq_angle_lobe *lobe, double alpha, double theta) {
     lq_panels panels;
     lq_panels_start(&panels, 0.0, 0.5 * pi);
     lq_panels_add(&panels, theta, false);
     lq_panels_grade(&panels, theta, alpha, 4.0);
     lq_panels_grade(&panels, 0.5 * pi, alpha, 4.0);
-    lobe->panels = panels.count - 1 < LQ_LOBE_PANELS ? panels.count - 1 : LQ_LOBE_PANELS;
+    lobe->panels = panels.count - 1 < LQ_ANGLE_LOBE_PANELS ? panels.count - 1 : LQ_ANGLE_LOBE_PANELS;
     for (int p = 0; p < lobe->panels; p++) lobe->at[p] = panels.at[p];
     lobe->at[lobe->panels] = 0.5 * pi;
 }
 
-void lq_lobe_make(lq_lobe *lobe, const lq_ndf *ndf, double alpha, double mu, const lq_lobe_rule *rule) {
+void lq_angle_lobe_make(lq_angle_lobe *lobe, const lq_ndf *ndf, double alpha, double mu,
+                        const lq_angle_lobe_rule *rule) {
     const double theta_i = atan2(lq_sine(mu), mu);
     const int n = rule->terms;
     place_panels(lobe, alpha, theta_i);
@@ -141,7 +142,7 @@ void lq_lobe_make(lq_lobe *lobe, const lq_ndf *ndf, double alpha, double mu, con
     lobe->below[0] = 0.0;
     for (int p = 0; p < lobe->panels; p++) {
         const double centre = 0.5 * (lobe->at[p] + lobe->at[p + 1]), half = centre - lobe->at[p];
-        double values[LQ_LOBE_TERMS];
+        double values[LQ_ANGLE_LOBE_TERMS];
         for (int j = 0; j < n; j++)
             values[j] = density_at(ndf, alpha, theta_i, centre + half * rule->node[j], &rule->ring);
         fit_series(rule, values, lobe->density[p]);
@@ -150,20 +151,20 @@ void lq_lobe_make(lq_lobe *lobe, const lq_ndf *ndf, double alpha, double mu, con
     }
 }
 
-int lq_lobe_panel(const lq_lobe *lobe, double theta, int from) {
+int lq_angle_lobe_panel(const lq_angle_lobe *lobe, double theta, int from) {
     while (from + 1 < lobe->panels && theta > lobe->at[from + 1]) from++;
     return from;
 }
 
-double lq_lobe_density(const lq_lobe *lobe, int panel, double theta) {
+double lq_angle_lobe_density(const lq_angle_lobe *lobe, int panel, double theta) {
     return sum_series(lobe->density[panel], lobe->terms, on_panel(lobe, panel, theta));
 }
 
-double lq_lobe_below(const lq_lobe *lobe, double theta) {
-    const int p = lq_lobe_panel(lobe, theta, 0);
+double lq_angle_lobe_below(const lq_angle_lobe *lobe, double theta) {
+    const int p = lq_angle_lobe_panel(lobe, theta, 0);
     return lobe->below[p] + sum_series(lobe->integral[p], lobe->terms + 1, on_panel(lobe, p, theta));
 }
 
-double lq_lobe_total(const lq_lobe *lobe) {
+double lq_angle_lobe_total(const lq_angle_lobe *lobe) {
     return lobe->below[lobe->panels];
 }
