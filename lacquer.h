@@ -301,7 +301,7 @@ enum { LQ_MAX_STREAMS = 2, LQ_MAX_FACTORS = 8, LQ_MAX_PIECES = 8 };
 typedef enum lq_coordinate {
     LQ_COORDINATE_AXIS,     /* x[axis] */
     LQ_COORDINATE_CRITICAL, /* mu = x[axis] from the critical cosine c = sqrt(max(1 - eta^2, 0)), eta =
-                             * x[other]: mu < c ? mu / c - 1 : (mu - c) / (1 - c), in [-1, 1] */
+                             * x[other]: mu < c ? -sqrt(1 - mu / c) : sqrt((mu - c) / (1 - c)), in [-1, 1] */
     LQ_COORDINATES
 } lq_coordinate;
 
@@ -331,12 +331,10 @@ typedef struct lq_term_sum {
 typedef enum lq_value {
     LQ_VALUE_PLAIN,  /* stream 0 */
     LQ_VALUE_SQUARE, /* stream 0 squared */
-    LQ_VALUE_BEER,   /* max(stream 0, 0) * t^(1 / max(stream 1, LQ_LEAST_COSINE)), t = x[value_axis]: energy
-                      * and effective cosine of a crossing; 0 at t = 0 */
+    LQ_VALUE_BEER,   /* stream 0 * t^(2^(stream 1)), t = x[value_axis] in [0,1]: the energy of a crossing and
+                      * the logarithm of its effective path */
     LQ_VALUES
 } lq_value;
-
-#define LQ_LEAST_COSINE 0.015625 /* 2^-6, exact in half */
 
 typedef struct lq_piece {
     double min[LQ_MAX_AXES], max[LQ_MAX_AXES]; /* its box on the table's axes, both ends included */
@@ -377,6 +375,55 @@ void lq_factored_free(lq_factored *factored);
  * table and no factors. */
 lq_status lq_factored_write(const lq_factored *factored, const char *path, lq_error *error);
 lq_status lq_factored_read(lq_factored **factored, const char *path, lq_error *error);
+
+/* --------------------------------------------------------------------------------------
+ * Making them
+ * -------------------------------------------------------------------------------------- */
+
+typedef enum lq_scheme {
+    LQ_SEQUENTIAL, /* D22 sec. 4: one axis after the other, each by singular vectors */
+    LQ_JOINT       /* all factors fitted together */
+} lq_scheme;
+
+/* One or two axes taken out of the table together, as so many bases (each of those of the axis before). */
+typedef struct lq_separation {
+    int axis_count;
+    int axes[2];
+    size_t bases;
+} lq_separation;
+
+typedef struct lq_pca_options {
+    size_t struct_size;
+    lq_scheme scheme;
+    int separation_count; /* what stays is the plane: 1 or 2 axes */
+    lq_separation separations[LQ_MAX_AXES];
+    lq_value value;               /* LQ_JOINT only, as all below */
+    int value_axis;               /* LQ_VALUE_BEER: that of tau */
+    size_t bases[LQ_MAX_STREAMS]; /* of the plane, for each stream; 0: the product of the separations' */
+    size_t pairs;                 /* two axes separated: products of lines that make one base of both */
+    bool critical;                /* the plane's mu is measured from the critical cosine (plane: mu, eta) */
+    double power;                 /* of the error that is minimised: 2 is rms, 8 close to the largest */
+    int sweeps;
+    size_t texels[LQ_MAX_AXES];  /* of each axis; 0: one a node */
+    int split_axis, split_count; /* pieces: the table is cut at nodes of one axis */
+    double splits[LQ_MAX_PIECES - 1];
+} lq_pca_options;
+
+lq_pca_options lq_pca_options_default(void);
+
+/* Factor one channel of a table. */
+lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
+                 const lq_progress *progress, lq_factored **factored, lq_error *error);
+
+/* Errors of lq_factored_lookup_gpu against a table of the same axes (any nodes), at all its nodes. */
+typedef struct lq_pca_errors {
+    size_t points;
+    double rms, p99, max;
+    double worst[LQ_MAX_AXES]; /* where max is */
+} lq_pca_errors;
+
+lq_status lq_factored_errors(const lq_factored *factored, const lq_table *exact, int channel,
+                             lq_pca_errors *errors, lq_error *error);
 
 #ifdef __cplusplus
 }

@@ -56,6 +56,7 @@ extern const cli_verb cli_verb_list;
 extern const cli_verb cli_verb_eval;
 extern const cli_verb cli_verb_precompute;
 extern const cli_verb cli_verb_validate;
+extern const cli_verb cli_verb_pca;
 extern const cli_verb cli_verb_info;
 extern const cli_verb cli_verb_bench;
 

@@ -28,7 +28,8 @@ double lq_coordinate_at(const lq_texture_axis *axis, const double *x) {
     if (axis->coordinate == LQ_COORDINATE_AXIS) return at;
     const double eta = x[axis->other];
     const double critical = eta < 1.0 ? sqrt((1.0 - eta) * (1.0 + eta)) : 0.0;
-    return at < critical ? at / critical - 1.0 : critical < 1.0 ? (at - critical) / (1.0 - critical) : 1.0;
+    if (at < critical) return -sqrt(1.0 - at / critical);
+    return critical < 1.0 ? sqrt((at - critical) / (1.0 - critical)) : 1.0;
 }
 
 size_t lq_factor_texels(const lq_factor *factor) {
@@ -68,10 +69,8 @@ double lq_value_apply(const lq_piece *piece, const double *s, const double *x) {
     switch (piece->value) {
     case LQ_VALUE_SQUARE:
         return s[0] * s[0];
-    case LQ_VALUE_BEER: {
-        const double t = x[piece->value_axis];
-        return t > 0.0 ? fmax(s[0], 0.0) * pow(t, 1.0 / fmax(s[1], LQ_LEAST_COSINE)) : 0.0;
-    }
+    case LQ_VALUE_BEER:
+        return s[0] * pow(x[piece->value_axis], exp2(s[1]));
     default:
         return s[0];
     }

@@ -128,15 +128,16 @@ static void test_lookup_is_the_formula(void **state) {
     const double s =
         plane(q, 0, column, row) * line(q + 1, 0, along) + plane(q, 1, column, row) * line(q + 1, 1, along);
     assert_float_equal(lq_factored_lookup(f, above), fmin(s * s, 1.0), 1e-14);
-    /* Below: critical cosine 0.8 at eta = 0.6; mu = 0.9 lies half way above it, at column 2 + 2 / 2. */
-    const double below[] = {0.9, 0.6, 0.2};
+    /* Below: critical cosine 0.8 at eta = 0.6; mu = 0.85 lies a quarter of the way above it, at column 2 + 2
+     * / 2. */
+    const double below[] = {0.85, 0.6, 0.2};
     const double energy =
         plane(p, 0, 3, 0.4) * line(p + 1, 0, along) + plane(p, 1, 3, 0.4) * line(p + 1, 1, along);
-    const double cosine =
+    const double path =
         plane(p, 2, 3, 0.4) * line(p + 1, 1, along) + plane(p, 0, 3, 0.4) * line(p + 1, 0, along);
-    assert_float_equal(lq_factored_lookup(f, below), fmin(energy * pow(0.2, 1 / cosine), 1.0), 1e-14);
-    /* Below the critical cosine: mu = 0.2 is three quarters of the way down, at column 2 - 2 * 3/4. */
-    const double beyond[] = {0.2, 0.6, 1.0};
+    assert_float_equal(lq_factored_lookup(f, below), fmin(energy * pow(0.2, exp2(path)), 1.0), 1e-14);
+    /* Below the critical cosine: mu = 0.35 is 9/16 of the way down, at column 2 - 2 * 3/4. */
+    const double beyond[] = {0.35, 0.6, 1.0};
     assert_float_equal(
         lq_factored_lookup(f, beyond),
         fmin(plane(p, 0, 0.5, 0.4) * line(p + 1, 0, 5) + plane(p, 1, 0.5, 0.4) * line(p + 1, 1, 5), 1.0),
