@@ -63,7 +63,7 @@ done
 
 # --------------------------------------------------------------------------------- bad words
 refused 'no verb; known: list, eval'
-refused "unknown verb 'x'; known: list, eval, precompute, validate, info, bench" x
+refused "unknown verb 'x'; known: list, eval, precompute, pca, validate, info, bench" x
 refused "unknown option '--x'" --x
 for verb in list eval precompute validate info bench; do
     refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense
