@@ -274,6 +274,9 @@ lq_status lq_precompute(const lq_kind *kind, const lq_settings *settings, const 
 
 /* The default axes of a kind. Free each with lq_axis_free. */
 lq_status lq_kind_axes(const lq_kind *kind, lq_axis *axes, lq_error *error);
+/* The same for the NDF of these settings: where it has only some roughnesses, alpha runs over those, and
+ * where it has one, alpha is that one node. */
+lq_status lq_settings_axes(const lq_kind *kind, const lq_settings *settings, lq_axis *axes, lq_error *error);
 
 /* Energy that leaves after exactly 1, 2, ... `count` hits of a conductor's microsurface; the sum
  * over all orders is FGD-infinity. point: mu, alpha, n, kappa. */

@@ -21,6 +21,8 @@ typedef struct lq_fan_constants {
     double sin_v;
 } lq_fan_constants;
 
+enum { LQ_LUNE_TERMS = 28 };
+
 typedef struct lq_microfacet_kernels {
     /* lq_fresnel_conductors */
     void (*conductors)(double cos_i, size_t count, const double *n, const double *kappa, double *reflectance);
@@ -31,6 +33,9 @@ typedef struct lq_microfacet_kernels {
     void (*octaves_density)(const lq_octaves *o, size_t count, const double *cos2, const double *sin2,
                             double *d);
     void (*octaves_areas)(const lq_octaves *o, size_t count, const double *mu, double *area);
+    /* sin phi - phi cos phi, cos phi = min(cot cosine / sine, 1), by the series of profile.c. */
+    void (*lunes)(const double *term, double cot, size_t count, const double *sine, const double *cosine,
+                  double *lune);
     /* Azimuth nodes h = chi/2 in [0, pi/2] with weights dh to facets: fills mirror, e_z and cos^2, sin^2 of
      * their tilt, and turns dh into dpsi. */
     void (*place_facets)(const lq_fan_constants *k, size_t count, const double *h, double *dpsi,

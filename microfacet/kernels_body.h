@@ -3,6 +3,7 @@
 #include "microfacet/kernels.h"
 
 #include <math.h>
+#include <string.h>
 
 static void conductors(double cos_i, size_t count, const double *restrict n, const double *restrict kappa,
                        double *restrict reflectance) {
@@ -29,34 +30,84 @@ static void ggx_areas_below(double alpha, size_t count, const double *restrict m
     }
 }
 
-/* x in [floor, 1) by its cell; what rounding puts outside is brought back. */
-static double octaves_value(const lq_octaves *o, const double (*restrict cubic)[4], double x) {
+/* Cubics at x in [floor, 1), OCTAVE_BLOCK of them; what rounding puts outside is brought back. The four
+ * coefficients of a cell are loaded as one vector and four of them transposed: gathers cost twice as much. */
+enum { OCTAVE_BLOCK = 16 };
+typedef double octave_v4 __attribute__((vector_size(32)));
+typedef int64_t octave_mask __attribute__((vector_size(32)));
+
+static void cubics_at(const double *restrict cubic, const int64_t *cell, octave_v4 *c) {
+    octave_v4 r[4];
+    for (int i = 0; i < 4; i++) memcpy(&r[i], cubic + cell[i], sizeof r[i]);
+    const octave_mask low = {0, 4, 2, 6}, high = {1, 5, 3, 7}, first = {0, 1, 4, 5}, second = {2, 3, 6, 7};
+    const octave_v4 a = __builtin_shuffle(r[0], r[1], low), b = __builtin_shuffle(r[0], r[1], high);
+    const octave_v4 d = __builtin_shuffle(r[2], r[3], low), e = __builtin_shuffle(r[2], r[3], high);
+    c[0] = __builtin_shuffle(a, d, first);
+    c[1] = __builtin_shuffle(b, e, first);
+    c[2] = __builtin_shuffle(a, d, second);
+    c[3] = __builtin_shuffle(b, e, second);
+}
+
+static void octaves_values(const lq_octaves *o, double *restrict x, double *restrict value) {
     const double least = o->floor, most = 0x1.fffffffffffffp-1;
-    x = x < least ? least : x > most ? most : x;
-    union {
-        double x;
-        int64_t bits;
-    } at = {x}, start;
-    const int64_t cell = at.bits >> o->shift;
-    start.bits = (int64_t)((uint64_t)cell << o->shift);
-    const double u = x - start.x;
-    const double *restrict c = cubic[cell - o->first];
-    const double value = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
-    return value > 0.0 ? value : 0.0;
+    const int64_t first = o->first;
+    const int shift = o->shift;
+    int64_t cell[OCTAVE_BLOCK], bits[OCTAVE_BLOCK];
+    double start[OCTAVE_BLOCK];
+    for (int i = 0; i < OCTAVE_BLOCK; i++) {
+        const double up = x[i] < least ? least : x[i];
+        x[i] = up > most ? most : up;
+    }
+    memcpy(bits, x, sizeof bits);
+    for (int i = 0; i < OCTAVE_BLOCK; i++) {
+        cell[i] = 4 * ((bits[i] >> shift) - first);
+        bits[i] &= -((int64_t)1 << shift);
+    }
+    memcpy(start, bits, sizeof start);
+    for (int i = 0; i < OCTAVE_BLOCK; i++) x[i] -= start[i];
+    for (int i = 0; i < OCTAVE_BLOCK; i += 4) {
+        octave_v4 c[4], u;
+        memcpy(&u, x + i, sizeof u);
+        cubics_at(&o->cubic[0][0], cell + i, c);
+        const octave_v4 v = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+        memcpy(value + i, &v, sizeof v);
+    }
+    for (int i = 0; i < OCTAVE_BLOCK; i++) value[i] = value[i] > 0.0 ? value[i] : 0.0;
 }
 
 static void octaves_density(const lq_octaves *o, size_t count, const double *restrict cos2,
                             const double *restrict sin2, double *restrict d) {
     const double b2 = o->floor;
-    for (size_t i = 0; i < count; i++)
-        d[i] = octaves_value(o, (const double(*)[4])o->cubic, b2 * cos2[i] + sin2[i]);
+    double x[OCTAVE_BLOCK] = {0.0}, value[OCTAVE_BLOCK];
+    for (size_t from = 0; from < count; from += OCTAVE_BLOCK) {
+        const size_t size = count - from < OCTAVE_BLOCK ? count - from : OCTAVE_BLOCK;
+        for (size_t i = 0; i < size; i++) x[i] = b2 * cos2[from + i] + sin2[from + i];
+        octaves_values(o, x, value);
+        memcpy(d + from, value, size * sizeof *d);
+    }
 }
 
 static void octaves_areas(const lq_octaves *o, size_t count, const double *restrict mu,
                           double *restrict area) {
     const double b = o->floor, rest = 1.0 - b;
-    for (size_t i = 0; i < count; i++)
-        area[i] = octaves_value(o, (const double(*)[4])o->cubic, b + rest * mu[i]);
+    double x[OCTAVE_BLOCK] = {0.0}, value[OCTAVE_BLOCK];
+    for (size_t from = 0; from < count; from += OCTAVE_BLOCK) {
+        const size_t size = count - from < OCTAVE_BLOCK ? count - from : OCTAVE_BLOCK;
+        for (size_t i = 0; i < size; i++) x[i] = b + rest * mu[from + i];
+        octaves_values(o, x, value);
+        memcpy(area + from, value, size * sizeof *area);
+    }
+}
+
+static void lunes(const double *restrict term, double cot, size_t count, const double *restrict sine,
+                  const double *restrict cosine, double *restrict lune) {
+    for (size_t i = 0; i < count; i++) {
+        const double rest = 1.0 - cot * cosine[i] / sine[i], x = rest > 0.0 ? rest : 0.0;
+        double sum = term[LQ_LUNE_TERMS - 1];
+#pragma GCC unroll 32 /* or the outer loop stays scalar */
+        for (int k = LQ_LUNE_TERMS - 2; k >= 0; k--) sum = sum * x + term[k];
+        lune[i] = x * sqrt(x) * sum;
+    }
 }
 
 /* sin h on [0, pi/2] by its Taylor series, absolute error below 1e-17. */
@@ -104,7 +155,7 @@ static void place_facets(const lq_fan_constants *k, size_t count, const double *
 }
 
 const lq_microfacet_kernels *LQ_KERNELS(void) {
-    static const lq_microfacet_kernels kernels = {conductors,      ggx_density,   ggx_areas_below,
-                                                  octaves_density, octaves_areas, place_facets};
+    static const lq_microfacet_kernels kernels = {
+        conductors, ggx_density, ggx_areas_below, octaves_density, octaves_areas, lunes, place_facets};
     return &kernels;
 }

@@ -1,6 +1,7 @@
 /* From what --ndf takes to an NDF: the list of families, and the reading of their parameters. */
 #include "microfacet/gtr.h"
 #include "microfacet/ndf.h"
+#include "microfacet/ndf_file.h"
 #include "microfacet/student_t.h"
 #include "tables/status.h"
 
@@ -43,12 +44,19 @@ static lq_status open_student_t(const lq_ndf **ndf, const family *of, const char
     return status == LQ_OK ? lq_student_t_open(ndf, gamma, error) : status;
 }
 
+static lq_status open_file(const lq_ndf **ndf, const family *of, const char *text, lq_error *error) {
+    (void)of;
+    return lq_ndf_file_open(ndf, text, error);
+}
+
 static const family families[] = {
     {"ggx", "ggx", "GGX (Trowbridge-Reitz): alpha is the slope scale itself", open_closed},
     {"beckmann", "beckmann", "normally distributed slopes: alpha is sqrt(2) times their rms", open_closed},
     {"gtr", "gtr:gamma=G", "generalised Trowbridge-Reitz (Burley 2012), G in [1, 10]; 2 is GGX", open_gtr},
     {"student-t", "student-t:gamma=G",
      "Student-t slopes (Ribardiere et al. 2017), G in [2, 100]; 2 is GGX, large G Beckmann", open_student_t},
+    {"file", "file:PATH", "samples of D in a CSV: theta_deg,D or, for a family, theta_deg,alpha=0.1,...",
+     open_file},
 };
 
 enum { FAMILIES = sizeof families / sizeof families[0] };

@@ -19,11 +19,18 @@ enum { DENSITY_BITS = 7, AREA_BITS = 6 };
 
 /* ---------------------------------------------------------------------------------- areas */
 
-/* sin phi - phi cos phi without its cancellation at small phi. */
-static double lune(double phi, double sin_phi, double cos_phi) {
-    if (phi > 0.3) return sin_phi - phi * cos_phi;
-    const double p = phi * phi;
-    return phi * p * (1.0 / 3.0 - p * (1.0 / 30.0 - p * (1.0 / 840.0 - p * (1.0 / 45360.0 - p / 3991680.0))));
+/* sin phi - phi cos phi over x = 1 - cos phi is the integral of acos(1 - x): x^(3/2) times a power series
+ * that converges like (x/2)^k, x <= 1. */
+typedef struct lune_series {
+    double term[LQ_LUNE_TERMS];
+} lune_series;
+
+static void lune_make(lune_series *lune) {
+    double a = sqrt(2.0); /* acos(1 - x) = sqrt(2 x) sum (2k)! / (8^k k!^2 (2k + 1)) x^k */
+    for (int k = 0; k < LQ_LUNE_TERMS; k++) {
+        lune->term[k] = a / ((2 * k + 1) * (k + 1.5));
+        a *= (2 * k + 1) * (2 * k + 2) / (8.0 * (k + 1) * (k + 1));
+    }
 }
 
 enum { AREA_NODES = 16, AREA_NODES_MAX = (LQ_PANELS_MAX - 1) * AREA_NODES };
@@ -33,6 +40,7 @@ enum { AREA_NODES = 16, AREA_NODES_MAX = (LQ_PANELS_MAX - 1) * AREA_NODES };
 typedef struct ladder {
     lq_gauss rule;
     lq_panels panels;
+    lune_series lune;
     double sine[AREA_NODES_MAX], cosine[AREA_NODES_MAX], weight[AREA_NODES_MAX]; /* weight times D sin^2 */
 } ladder;
 
@@ -54,6 +62,7 @@ static void fill_panel(const lq_ndf *ndf, double alpha, const lq_gauss *rule, co
 
 static void ladder_make(ladder *l, const lq_ndf *ndf, double alpha) {
     lq_gauss_make(&l->rule, AREA_NODES);
+    lune_make(&l->lune);
     lq_panels_start(&l->panels, 0.0, 0.5 * pi);
     lq_panels_grade(&l->panels, 0.0, 0.5 * alpha, 1.6);
     /* Steep facets of a wide lobe: D may fall there like exp(-tan^2). */
@@ -63,13 +72,14 @@ static void ladder_make(ladder *l, const lq_ndf *ndf, double alpha) {
                    l->cosine + (size_t)p * AREA_NODES, l->weight + (size_t)p * AREA_NODES);
 }
 
-static double add_facets(size_t count, const double *sine, const double *cosine, const double *weight,
-                         double mu, double s) {
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        const double cos_phi = fmin(mu * cosine[i] / (s * sine[i]), 1.0);
-        const double sin_phi = sqrt((1.0 - cos_phi) * (1.0 + cos_phi));
-        sum += weight[i] * lune(atan2(sin_phi, cos_phi), sin_phi, cos_phi);
+static double add_facets(const ladder *l, size_t count, const double *sine, const double *cosine,
+                         const double *weight, double mu, double s) {
+    enum { BLOCK = 256 };
+    double part[BLOCK], sum = 0.0;
+    for (size_t from = 0; from < count; from += BLOCK) {
+        const size_t size = count - from < BLOCK ? count - from : BLOCK;
+        lq_microfacet_kernels_get()->lunes(l->lune.term, mu / s, size, sine + from, cosine + from, part);
+        for (size_t i = 0; i < size; i++) sum += weight[from + i] * part[i];
     }
     return sum;
 }
@@ -88,10 +98,10 @@ static double ladder_area(const ladder *l, const lq_ndf *ndf, double alpha, doub
     lq_panels_start(&first, from, fmax(at[p + 1], from));
     first.singular[0] = true; /* the azimuth opens there */
     fill_panel(ndf, alpha, &l->rule, &first, 0, sine, cosine, weight);
-    sum += add_facets(AREA_NODES, sine, cosine, weight, mu, s);
+    sum += add_facets(l, AREA_NODES, sine, cosine, weight, mu, s);
     const size_t start = (size_t)(p + 1) * AREA_NODES, end = (size_t)(l->panels.count - 1) * AREA_NODES;
     if (start < end)
-        sum += add_facets(end - start, l->sine + start, l->cosine + start, l->weight + start, mu, s);
+        sum += add_facets(l, end - start, l->sine + start, l->cosine + start, l->weight + start, mu, s);
     return 2.0 * s * sum;
 }
 

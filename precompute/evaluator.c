@@ -58,6 +58,31 @@ lq_status lq_job_prepare(const lq_job *job, const lq_evaluator *evaluator, size_
     return lq_ndf_prepare(job->ndf, job->nodes[evaluator->slice_axis][index], error);
 }
 
+/* The roughness of a kind, along which it is sliced, over what the NDF has of it. */
+static lq_status clip_roughness(const lq_kind *kind, const lq_ndf *ndf, lq_axis *axes, lq_error *error) {
+    const int axis = lq_evaluator_find(kind->id)->slice_axis;
+    const lq_axis_info *info = &kind->axes[axis];
+    double low, high;
+    lq_ndf_range(ndf, &low, &high);
+    if (low <= info->min && high >= info->max) return LQ_OK;
+    lq_axis_free(&axes[axis]);
+    return lq_axis_make(&axes[axis], info->name, fmax(low, info->min), fmin(high, info->max),
+                        low == high ? 1 : info->size, info->map, 0.0, error);
+}
+
+lq_status lq_settings_axes(const lq_kind *kind, const lq_settings *settings, lq_axis *axes, lq_error *error) {
+    const lq_ndf *own = NULL;
+    lq_status status = settings->opened ? LQ_OK : lq_ndf_open(&own, settings->ndf, error);
+    if (status != LQ_OK) return status;
+    status = lq_kind_axes(kind, axes, error);
+    if (status == LQ_OK) {
+        status = clip_roughness(kind, own ? own : settings->opened, axes, error);
+        for (int a = 0; status != LQ_OK && a < kind->axis_count; a++) lq_axis_free(&axes[a]);
+    }
+    lq_ndf_close(own);
+    return status;
+}
+
 static lq_status check_roughness(const lq_job *job, lq_error *error) {
     const int axis = lq_evaluator_find(job->kind->id)->slice_axis;
     for (size_t i = 0; i < job->size[axis]; i++) {

@@ -169,7 +169,7 @@ static int eval_orders(const eval_request *request, const eval_source *source, c
 static int eval_request_run(const eval_request *request, const eval_source *source) {
     bool has_point = request->word_count > (request->from ? 0 : 1);
     if (!has_point && request->format == FORMAT_CSV && request->orders == 0) return eval_csv(source, stdin);
-    eval_point point = {0};
+    eval_point point = eval_start(source);
     if (!read_point(request, source, &point)) return CLI_FAILED;
     if (request->orders > 0) return eval_orders(request, source, &point);
     return eval_one(request, source, &point);

@@ -39,6 +39,7 @@ typedef struct eval_result {
     lq_error error;
 } eval_result;
 
+/* `settings` with their NDF opened, where it is not the default. */
 void eval_source_kind(eval_source *source, const lq_kind *kind, const lq_settings *settings);
 lq_status eval_source_file(eval_source *source, const char *path, lq_error *error);
 void eval_source_free(eval_source *source);
@@ -48,6 +49,8 @@ int eval_find_axis(const eval_source *source, const char *name, lq_error *error)
 /* Read one coordinate. Errors: not a number, out of the accepted range, given before. */
 bool eval_coordinate(const eval_source *source, eval_point *point, int axis, const char *text,
                      lq_error *error);
+/* A point with nothing given; an axis of one value need not be. */
+eval_point eval_start(const eval_source *source);
 /* Whether every axis was given; if not, the message names the missing ones. */
 bool eval_complete(const eval_source *source, const eval_point *point, lq_error *error);
 

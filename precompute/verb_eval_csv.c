@@ -26,6 +26,7 @@ typedef struct csv_stream {
     FILE *in;
     size_t line;              /* of the row read last, from 1 */
     int columns[LQ_MAX_AXES]; /* the axis of each column */
+    int column_count;
     bool ended;
     bool failed; /* ended by an error; `error` says which */
     lq_error error;
@@ -93,9 +94,7 @@ static void read_header_fields(csv_stream *stream, char *rest) {
         } else if (seen.given[axis]) {
             stop(stream, "a column name stands there twice");
         } else {
-            int column = 0;
-            for (int i = 0; i < stream->source->axis_count; i++) column += seen.given[i];
-            stream->columns[column] = axis;
+            stream->columns[stream->column_count++] = axis;
             seen.given[axis] = true;
         }
     }
@@ -116,8 +115,8 @@ static void read_header(csv_stream *stream, csv_row *row) {
 
 static void read_coordinates(csv_stream *stream, csv_row *row, char *rest) {
     lq_error error = {""};
-    row->point = (eval_point){0};
-    int count = 0, wanted = stream->source->axis_count;
+    row->point = eval_start(stream->source);
+    int count = 0, wanted = stream->column_count;
     for (char *field; (field = next_field(&rest)); count++) {
         if (count < wanted && !stream->failed &&
             !eval_coordinate(stream->source, &row->point, stream->columns[count], field, &error))

@@ -11,6 +11,12 @@ void eval_source_kind(eval_source *source, const lq_kind *kind, const lq_setting
     source->axis_count = kind->axis_count;
     for (int i = 0; i < kind->axis_count; i++)
         source->axes[i] = (eval_axis){kind->axes[i].name, kind->axes[i].lowest, kind->axes[i].highest};
+    /* An NDF of one roughness leaves no choice. */
+    double low = 0.0, high = 1.0;
+    if (settings->opened) lq_ndf_range(settings->opened, &low, &high);
+    for (int i = 0; i < kind->axis_count; i++)
+        if (low == high && strcmp(kind->axes[i].name, "alpha") == 0)
+            source->axes[i].lowest = source->axes[i].highest = low;
     source->channel_count = kind->channel_count;
     for (int i = 0; i < kind->channel_count; i++) source->channels[i] = kind->channels[i];
 }
@@ -64,10 +70,17 @@ bool eval_coordinate(const eval_source *source, eval_point *point, int axis, con
     return true;
 }
 
+eval_point eval_start(const eval_source *source) {
+    eval_point point = {0};
+    for (int i = 0; i < source->axis_count; i++) point.at[i] = source->axes[i].lowest;
+    return point;
+}
+
 bool eval_complete(const eval_source *source, const eval_point *point, lq_error *error) {
     char list[LQ_MESSAGE_SIZE] = "";
     for (int i = 0; i < source->axis_count; i++)
-        if (!point->given[i]) cli_join(list, sizeof list, source->axes[i].name);
+        if (!point->given[i] && source->axes[i].lowest < source->axes[i].highest)
+            cli_join(list, sizeof list, source->axes[i].name);
     if (list[0]) lq_fail(error, LQ_BAD_INPUT, "missing axis values for %s: %s", source_name(source), list);
     return list[0] == '\0';
 }

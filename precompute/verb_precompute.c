@@ -151,7 +151,7 @@ static bool is_mitsuba(const table_request *request, const lq_kind *kind) {
 static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis *axes) {
     bool given[LQ_MAX_AXES] = {false};
     lq_error error = {""};
-    lq_status status = lq_kind_axes(kind, axes, &error);
+    lq_status status = lq_settings_axes(kind, &request->settings.settings, axes, &error);
     if (status == LQ_OK && is_mitsuba(request, kind)) status = precompute_mitsuba_axes(axes, &error);
     if (status != LQ_OK) {
         cli_message("%s", error.text);

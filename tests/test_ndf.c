@@ -2,10 +2,7 @@
  */
 #include "microfacet/facets.h"
 #include "microfacet/profile.h"
-#include "tests/expect.h"
-#include "validate/walk_kind.h"
-
-#include <string.h>
+#include "tests/ndf.h"
 
 static const char *const formulas[] = {"ggx",
                                        "beckmann",
@@ -23,13 +20,6 @@ enum { FORMULAS = sizeof formulas / sizeof formulas[0] };
 static const double alphas[] = {1e-6, 1e-4, 0.01, 0.1, 0.4, 0.8, 1.0};
 enum { ALPHAS = sizeof alphas / sizeof alphas[0] };
 static const double pi = 3.14159265358979323846;
-
-static const lq_ndf *open(const char *text) {
-    const lq_ndf *ndf;
-    lq_error error = {""};
-    if (lq_ndf_open(&ndf, text, &error) != LQ_OK) fail_msg("%s: %s", text, error.text);
-    return ndf;
-}
 
 /* integral m_z D dm over normals within `theta`; the last panel is singular, for D ~ cos^(2 gamma - 4). */
 static double held_within(const lq_ndf *ndf, double alpha, double theta) {
@@ -54,7 +44,7 @@ static double held_within(const lq_ndf *ndf, double alpha, double theta) {
 static void each_is_normalised(void **state) {
     (void)state;
     for (int i = 0; i < FORMULAS; i++) {
-        const lq_ndf *ndf = open(formulas[i]);
+        const lq_ndf *ndf = open_ndf(formulas[i]);
         for (int a = 0; a < ALPHAS; a++) assert_near(held_within(ndf, alphas[a], 0.5 * pi), 1.0, 1e-9);
         lq_ndf_close(ndf);
     }
@@ -64,7 +54,7 @@ static void quantiles_invert_the_distribution(void **state) {
     (void)state;
     static const double parts[] = {0.0, 1e-6, 0.01, 0.3, 0.7, 0.99, 0.99999};
     for (int i = 0; i < FORMULAS; i++) {
-        const lq_ndf *ndf = open(formulas[i]);
+        const lq_ndf *ndf = open_ndf(formulas[i]);
         for (int a = 0; a < ALPHAS; a++)
             for (int k = 0; k < 7; k++) {
                 const double slope = ndf->slope_quantile(ndf, alphas[a], parts[k]);
@@ -90,7 +80,7 @@ static void areas_are_those_of_the_facets(void **state) {
     lq_facet_rule rule;
     lq_facet_rule_make(&rule, 24, 40);
     for (int i = 0; i < FORMULAS; i++) {
-        const lq_ndf *ndf = open(formulas[i]);
+        const lq_ndf *ndf = open_ndf(formulas[i]);
         for (int a = 0; a < ALPHAS; a++)
             for (int m = 0; m < 7; m++) {
                 const double mu = cosines[m], s = lq_sine(mu), below = ndf->area_below(ndf, alphas[a], mu, s);
@@ -113,7 +103,7 @@ static void quadrature_agrees_with_closed_areas(void **state) {
     (void)state;
     static const char *const closed[] = {"ggx", "beckmann", "student-t:gamma=2.5", "student-t:gamma=8"};
     for (int i = 0; i < 4; i++) {
-        const lq_ndf *ndf = open(closed[i]);
+        const lq_ndf *ndf = open_ndf(closed[i]);
         for (int a = 0; a < ALPHAS; a++)
             for (double mu = 0.0; mu < 1.0; mu += 0.05) {
                 const double s = lq_sine(mu), want = ndf->area_below(ndf, alphas[a], mu, s);
@@ -135,7 +125,7 @@ static void families_meet(void **state) {
                  {"gtr:gamma=1", "gtr:gamma=1.0000001", 1e-5},
                  {"student-t:gamma=100", "beckmann", 2e-2}};
     for (int i = 0; i < 4; i++) {
-        const lq_ndf *one = open(pairs[i].first), *two = open(pairs[i].second);
+        const lq_ndf *one = open_ndf(pairs[i].first), *two = open_ndf(pairs[i].second);
         for (int a = 0; a < ALPHAS; a++)
             for (double mu = 0.0; mu <= 1.0; mu += 0.1) {
                 const double s = lq_sine(mu), c2 = mu * mu, s2 = s * s, alpha = alphas[a];
@@ -149,16 +139,6 @@ static void families_meet(void **state) {
         lq_ndf_close(one);
         lq_ndf_close(two);
     }
-}
-
-static double value_of(const char *kind, const char *ndf, const double *point, double *estimate) {
-    lq_settings settings = lq_settings_default();
-    lq_error error = {""};
-    double values[LQ_MAX_CHANNELS];
-    settings.ndf = ndf;
-    if (lq_eval(lq_kind_find(kind, NULL), &settings, point, values, estimate, &error) != LQ_OK)
-        fail_msg("%s, %s: %s", kind, ndf, error.text);
-    return values[0];
 }
 
 /* F = 1 (n = 0): all light comes back; and a dielectric keeps it. */
@@ -178,38 +158,12 @@ static void energy_is_kept(void **state) {
 /* Solver against random walks that share its NDF and Fresnel code alone. */
 static void walks_agree(void **state) {
     (void)state;
-    static const struct {
-        const char *kind;
-        double point[4];
-    } cases[] = {{"fgd", {0.4, 0.3, 0.2, 3.9}},
-                 {"fgd-dielectric", {0.4, 0.5, 1.5}},
-                 {"tir-pass", {0.6, 0.2, 0.75}},
-                 {"albedo", {0.2, 0.6}}};
-    const lq_walk_run run = {.samples = 20000, .seed = 7, .threads = 1};
-    for (int i = 0; i < FORMULAS; i++)
-        for (int k = 0; k < 4; k++) {
-            const lq_kind *kind = lq_kind_find(cases[k].kind, NULL);
-            lq_settings settings = lq_settings_default();
-            lq_walk_mean mean[LQ_MAX_CHANNELS];
-            lq_error error = {""};
-            double estimate;
-            settings.ndf = formulas[i];
-            const double value = value_of(cases[k].kind, formulas[i], cases[k].point, &estimate);
-            if (lq_walk_kind(kind, &settings, cases[k].point, &run, mean, &error) != LQ_OK)
-                fail_msg("%s", error.text);
-            if (!(fabs(value - mean[0].mean) <= 4.0 * lq_walk_noise(mean[0], run.samples) + estimate))
-                fail_msg("%s, %s: %.6f, walk %.6f +- %.6f", cases[k].kind, formulas[i], value, mean[0].mean,
-                         mean[0].error);
-        }
-}
-
-static void expect_refused(const char *text, lq_status status, const char *part) {
-    const lq_ndf *ndf;
-    lq_error error = {""};
-    assert_int_equal(lq_ndf_open(&ndf, text, &error), status);
-    assert_null(ndf);
-    if (!strstr(error.text, part)) fail_msg("'%s' does not say '%s'", error.text, part);
-    assert_null(strchr(error.text, '\n'));
+    for (int i = 0; i < FORMULAS; i++) {
+        expect_walk_agrees("fgd", formulas[i], (const double[]){0.4, 0.3, 0.2, 3.9}, 0.0);
+        expect_walk_agrees("fgd-dielectric", formulas[i], (const double[]){0.4, 0.5, 1.5}, 0.0);
+        expect_walk_agrees("tir-pass", formulas[i], (const double[]){0.6, 0.2, 0.75}, 0.0);
+        expect_walk_agrees("albedo", formulas[i], (const double[]){0.2, 0.6}, 0.0);
+    }
 }
 
 static void bad_names_are_refused(void **state) {
@@ -228,7 +182,7 @@ static void bad_names_are_refused(void **state) {
 static void texts_open_again(void **state) {
     (void)state;
     for (int i = 0; i < FORMULAS; i++) {
-        const lq_ndf *first = open(formulas[i]), *second = open(lq_ndf_text(first));
+        const lq_ndf *first = open_ndf(formulas[i]), *second = open_ndf(lq_ndf_text(first));
         assert_string_equal(lq_ndf_text(first), lq_ndf_text(second));
         lq_ndf_close(first);
         lq_ndf_close(second);

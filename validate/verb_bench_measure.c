@@ -35,8 +35,9 @@ static bool is_dielectric(const lq_kind *kind) {
 }
 
 static lq_status make_axes(bench_job *job, lq_error *error) {
-    lq_status status = lq_kind_axes(job->kind, job->axes, error);
+    lq_status status = lq_settings_axes(job->kind, &job->options.settings, job->axes, error);
     for (int a = 0; status == LQ_OK && a < job->kind->axis_count; a++) {
+        if (job->axes[a].size == 1) continue; /* an NDF of one roughness */
         size_t nodes = 32;
         double min = job->axes[a].min;
         const double max = job->axes[a].max;
@@ -196,7 +197,7 @@ static lq_status run_row(bench_job *job, const lq_axis *axes, const reference *t
 static lq_status run_full(bench_job *job, const lq_progress *progress, lq_error *error) {
     lq_axis axes[LQ_MAX_AXES];
     reference to = {NULL, NULL, NULL};
-    lq_status status = lq_kind_axes(job->kind, axes, error);
+    lq_status status = lq_settings_axes(job->kind, &job->options.settings, axes, error);
     if (status != LQ_OK) return status;
     status = refer(job, axes, &to, error);
     if (status == LQ_OK) {

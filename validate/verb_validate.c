@@ -166,6 +166,8 @@ lq_status validate_load_file(const char *path, lq_table **table, lq_origin *orig
 
 static lq_status load(validate_job *job, lq_error *error) {
     lq_status status = validate_load_file(job->request.file, &job->table, &job->origin, error);
+    /* Once, not at every point: an NDF may tabulate. */
+    if (status == LQ_OK) status = lq_ndf_open(&job->origin.settings.opened, job->origin.settings.ndf, error);
     if (status == LQ_OK && job->request.walk && !lq_walk_knows(job->origin.kind)) {
         status = LQ_BAD_INPUT;
         snprintf(error->text, sizeof error->text, "no random walk is known for table '%s'",

@@ -149,6 +149,7 @@ lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_er
 void validate_free(validate_job *job) {
     for (int k = 0; k < VALIDATE_LISTS; k++) free(job->lists[k].compared);
     free(job->at);
+    lq_ndf_close(job->origin.settings.opened);
     lq_table_free(job->table);
 }
 
