@@ -82,6 +82,9 @@ done
 run 0 precompute coated-lambertian --axis mu=0,0.1,1 "${rough[@]}" "${absorbing[@]}" --axis rho=0,0.7,1 -o coated.exr
 run 0 validate coated.exr --against walk --points 16 --samples 4000
 
+refused 'hard-cases takes no --points' validate hard-cases --points 3
+refused 'hard-cases takes no --against' validate hard-cases --against walk
+
 # a Mitsuba file in one command, each of its parts against the solver: the cosine-weighted means are a quadrature
 # of the file's own, the kind diffuse-transmission another
 run 0 precompute transmission --format mitsuba --axis mu=0:1:9:power4 --axis alpha=0:1:4:power4 \

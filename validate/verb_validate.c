@@ -54,14 +54,15 @@ static int run(int argc, char **argv);
 const cli_verb cli_verb_validate = {
     .name = "validate",
     .summary = "check a stored table against the exact solver and random walks",
-    .usage = "FILE [options]",
+    .usage = "FILE [options]\nhard-cases [--ndf NDF] [--format text|json]",
     .options = options,
     .notes = print_notes,
     .examples = "lacquer validate fgd.exr\n"
                 "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
                 "lacquer validate fgd.exr --budget 1e-3 --format json\n"
                 "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
-                "lacquer validate TIR.bin --layout belcour --kind tir-pass",
+                "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate hard-cases",
     .run = run,
 };
 
@@ -125,6 +126,27 @@ static bool take(validate_request *request, int id, const char *value) {
     return false;
 }
 
+/* The word that stands in place of FILE; a file of that name is ./hard-cases. */
+static bool is_hard_cases(const validate_request *request) {
+    return strcmp(request->file, "hard-cases") == 0;
+}
+
+/* Of all options, the cases take the NDF, the format and the threads. */
+static bool suits_hard_cases(const validate_request *request) {
+    const cli_settings *settings = &request->settings;
+    const char *given = NULL;
+    if (settings->given[CLI_SCATTERING - CLI_NDF]) given = "--scattering";
+    if (settings->given[CLI_MASKING - CLI_NDF]) given = "--masking";
+    if (settings->given[CLI_TOLERANCE - CLI_NDF]) given = "--tolerance";
+    if (request->layout >= 0) given = "--layout";
+    if (request->kind) given = "--kind";
+    if (request->budget > 0.0) given = "--budget";
+    if (request->points_given) given = "--points";
+    if (request->walk || request->other) given = "--against";
+    if (given) cli_message("hard-cases takes no %s: every case has its own limit", given);
+    return !given;
+}
+
 /* Do the options about published tables go together? */
 static bool suits(const validate_request *request) {
     const char *given = cli_settings_given(&request->settings);
@@ -151,7 +173,7 @@ static bool parse(validate_request *request, int argc, char **argv) {
     }
     if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
     else if (samples_given && !request->walk) cli_message("--samples needs --against walk");
-    else return suits(request);
+    else return is_hard_cases(request) ? suits_hard_cases(request) : suits(request);
     return false;
 }
 
@@ -187,6 +209,7 @@ static int report(const validate_job *job) {
 static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
+    if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
     if (job.request.other || job.request.layout >= 0) return validate_against(&job.request);
     lq_error error = {""};
     lq_status status = load(&job, &error);

@@ -53,6 +53,9 @@ lq_status validate_load_file(const char *path, lq_table **table, lq_origin *orig
 /* The whole of `validate --against OTHER`; returns the exit code. */
 int validate_against(const validate_request *request);
 
+/* The whole of `validate hard-cases`; returns the exit code. */
+int validate_hard_cases(const validate_request *request);
+
 /* Draw the points, compute everything at each and reduce the lists. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);
 void validate_free(validate_job *job);

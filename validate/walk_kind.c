@@ -8,13 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The coordinate of the axis called `name`, or `otherwise` where the kind has no such axis. */
-static double coordinate(const lq_kind *kind, const double *point, const char *name, double otherwise) {
-    for (int i = 0; i < kind->axis_count; i++)
-        if (strcmp(kind->axes[i].name, name) == 0) return point[i];
-    return otherwise;
-}
-
 static lq_status walk_fgd(lq_walk *walk, const lq_settings *settings, lq_walk_mean *values, lq_error *error) {
     walk->fresnel = LQ_WALK_CONDUCTOR;
     if (settings->scattering == LQ_SINGLE) return lq_walk_single(walk, settings->masking, values, error);
@@ -165,6 +158,12 @@ static int find(const lq_kind *kind) {
     return -1;
 }
 
+double lq_kind_coordinate(const lq_kind *kind, const double *point, const char *name, double otherwise) {
+    for (int i = 0; i < kind->axis_count; i++)
+        if (strcmp(kind->axes[i].name, name) == 0) return point[i];
+    return otherwise;
+}
+
 bool lq_walk_knows(const lq_kind *kind) {
     return find(kind) >= 0;
 }
@@ -178,12 +177,12 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
     lq_status status = settings->opened ? LQ_OK : lq_ndf_open(&own, settings->ndf, error);
     if (status != LQ_OK) return status;
     walk.ndf = own ? own : settings->opened;
-    walk.mu = coordinate(kind, point, "mu", 1.0);
-    walk.alpha = coordinate(kind, point, "alpha", 0.0);
-    walk.n = coordinate(kind, point, "n", coordinate(kind, point, "eta", 1.0));
-    walk.kappa = coordinate(kind, point, "kappa", 0.0);
-    walk.tau_far = coordinate(kind, point, "tau", 1.0);
-    walk.rho = coordinate(kind, point, "rho", 0.0);
+    walk.mu = lq_kind_coordinate(kind, point, "mu", 1.0);
+    walk.alpha = lq_kind_coordinate(kind, point, "alpha", 0.0);
+    walk.n = lq_kind_coordinate(kind, point, "n", lq_kind_coordinate(kind, point, "eta", 1.0));
+    walk.kappa = lq_kind_coordinate(kind, point, "kappa", 0.0);
+    walk.tau_far = lq_kind_coordinate(kind, point, "tau", 1.0);
+    walk.rho = lq_kind_coordinate(kind, point, "rho", 0.0);
     walk.samples = run->samples;
     walk.seed = run->seed;
     walk.purpose = run->purpose;

@@ -11,6 +11,9 @@ typedef struct lq_walk_run {
     int threads;            /* 0: one per core */
 } lq_walk_run;
 
+/* The coordinate of the axis called `name`, or `otherwise` where the kind has no such axis. */
+double lq_kind_coordinate(const lq_kind *kind, const double *point, const char *name, double otherwise);
+
 bool lq_walk_knows(const lq_kind *kind);
 
 /* One mean per channel of the kind. LQ_BAD_INPUT where no walk is known for it or the point is outside. */
