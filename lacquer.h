@@ -242,6 +242,34 @@ const char *lq_ndf_note(const lq_ndf *ndf);
 void lq_ndf_range(const lq_ndf *ndf, double *alpha_min, double *alpha_max);
 
 /* ======================================================================================
+ *                                        Plugins
+ * ====================================================================================== */
+
+/* An NDF of your own: a shared object with this function, opened as "plugin:PATH.so" (docs/tutorial-ndf.md).
+ *
+ *     #include <lacquer.h>
+ *     static void density(double alpha, size_t count, const double *cos2, const double *sin2, double *d)
+ * {...} const lq_ndf_plugin *lacquer_ndf_plugin(void) { static const lq_ndf_plugin plugin =
+ * {LQ_NDF_PLUGIN_VERSION, sizeof plugin, "title", "source", 0.0, 1.0, density}; return &plugin;
+ *     }
+ *     cc -O2 -shared -fPIC plugin.c -o plugin.so
+ */
+#define LQ_NDF_PLUGIN_VERSION 1
+
+typedef struct lq_ndf_plugin {
+    unsigned version;            /* LQ_NDF_PLUGIN_VERSION */
+    size_t struct_size;          /* sizeof(lq_ndf_plugin) */
+    const char *title, *source;  /* one line each, or NULL */
+    double alpha_min, alpha_max; /* roughnesses it has besides 0, in [0,1]; equal: only this one */
+    /* D, in any scale, of `count` normals given by cos^2 and sin^2 of their angle to the z axis, for
+     * 0 < alpha <= 1: finite and >= 0, D about as wide as slopes of `alpha`. Called from any thread. */
+    void (*density)(double alpha, size_t count, const double *cos2, const double *sin2, double *d);
+} lq_ndf_plugin;
+
+/* Defined by the plugin, not by this library. */
+const lq_ndf_plugin *lacquer_ndf_plugin(void);
+
+/* ======================================================================================
  *                                      Computation
  * ====================================================================================== */
 

@@ -49,6 +49,11 @@ static lq_status open_file(const lq_ndf **ndf, const family *of, const char *tex
     return lq_ndf_file_open(ndf, text, error);
 }
 
+static lq_status open_plugin(const lq_ndf **ndf, const family *of, const char *text, lq_error *error) {
+    (void)of;
+    return lq_ndf_plugin_open(ndf, text, error);
+}
+
 static const family families[] = {
     {"ggx", "ggx", "GGX (Trowbridge-Reitz): alpha is the slope scale itself", open_closed},
     {"beckmann", "beckmann", "normally distributed slopes: alpha is sqrt(2) times their rms", open_closed},
@@ -57,6 +62,7 @@ static const family families[] = {
      "Student-t slopes (Ribardiere et al. 2017), G in [2, 100]; 2 is GGX, large G Beckmann", open_student_t},
     {"file", "file:PATH", "samples of D in a CSV: theta_deg,D or, for a family, theta_deg,alpha=0.1,...",
      open_file},
+    {"plugin", "plugin:PATH.so", "D compiled from C, see lq_ndf_plugin in lacquer.h", open_plugin},
 };
 
 enum { FAMILIES = sizeof families / sizeof families[0] };
