@@ -1,16 +1,27 @@
 /* Rebuilds kind and settings from the facts of a table, refusing what it does not understand. */
 #include "validate/origin.h"
 
+#include "tables/facts.h"
 #include "tables/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* The facts of a file. */
+typedef struct facts {
+    const lq_fact *list;
+    size_t count;
+} facts;
+
+static const char *fact(const facts *from, const char *key) {
+    return lq_facts_find(from->list, from->count, key);
+}
+
 /* Puts the index of a fact's value among two choices into `choice`. */
-static lq_status read_choice(const lq_table *table, const char *key, const char *first, const char *second,
+static lq_status read_choice(const facts *from, const char *key, const char *first, const char *second,
                              int *choice, lq_error *error) {
-    const char *value = lq_table_fact(table, key);
+    const char *value = fact(from, key);
     if (!value) return lq_fail(error, LQ_FORMAT, "the table does not say its %s", key);
     if (strcmp(value, first) != 0 && strcmp(value, second) != 0)
         return lq_fail(error, LQ_FORMAT, "unknown %s '%s' in the table; known: %s, %s", key, value, first,
@@ -19,8 +30,8 @@ static lq_status read_choice(const lq_table *table, const char *key, const char 
     return LQ_OK;
 }
 
-static lq_status read_tolerance(const lq_table *table, double *tolerance, lq_error *error) {
-    const char *text = lq_table_fact(table, "tolerance");
+static lq_status read_tolerance(const facts *from, double *tolerance, lq_error *error) {
+    const char *text = fact(from, "tolerance");
     if (!text) return lq_fail(error, LQ_FORMAT, "the table does not say its tolerance");
     char *end;
     *tolerance = strtod(text, &end);
@@ -45,31 +56,35 @@ static lq_status check_shape(const lq_table *table, const lq_kind *kind, lq_erro
     return LQ_OK;
 }
 
-static lq_status read_settings(const lq_table *table, const lq_kind *kind, lq_settings *settings,
+static lq_status read_settings(const facts *from, const lq_kind *kind, lq_settings *settings,
                                lq_error *error) {
     *settings = lq_settings_default();
-    settings->ndf = lq_table_fact(table, "ndf");
+    settings->ndf = fact(from, "ndf");
     if (!settings->ndf) return lq_fail(error, LQ_FORMAT, "the table does not say its ndf");
-    lq_status status = read_tolerance(table, &settings->tolerance, error);
+    lq_status status = read_tolerance(from, &settings->tolerance, error);
     int choice = 0;
     if (status == LQ_OK && (kind->takes & LQ_TAKES_SCATTERING)) {
-        status = read_choice(table, "scattering", "single", "multiple", &choice, error);
+        status = read_choice(from, "scattering", "single", "multiple", &choice, error);
         settings->scattering = choice ? LQ_MULTIPLE : LQ_SINGLE;
     }
     if (status == LQ_OK && (kind->takes & LQ_TAKES_MASKING)) {
-        status = read_choice(table, "masking", "correlated", "separable", &choice, error);
+        status = read_choice(from, "masking", "correlated", "separable", &choice, error);
         settings->masking = choice ? LQ_SEPARABLE : LQ_CORRELATED;
     }
     return status;
 }
 
-lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error) {
-    const char *id = lq_table_fact(table, "table");
+lq_status lq_origin_of_facts(const lq_fact *list, size_t count, lq_origin *origin, lq_error *error) {
+    const facts from = {list, count};
+    const char *id = fact(&from, "table");
     if (!id) return lq_fail(error, LQ_FORMAT, "the table does not say of which kind it is");
     origin->kind = lq_kind_find(id, error);
-    if (!origin->kind) return LQ_FORMAT;
-    const lq_status status = check_shape(table, origin->kind, error);
-    return status == LQ_OK ? read_settings(table, origin->kind, &origin->settings, error) : status;
+    return origin->kind ? read_settings(&from, origin->kind, &origin->settings, error) : LQ_FORMAT;
+}
+
+lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error) {
+    const lq_status status = lq_origin_of_facts(table->facts, table->fact_count, origin, error);
+    return status == LQ_OK ? check_shape(table, origin->kind, error) : status;
 }
 
 /* Masking is a matter of single scattering: the walk of all orders has none of its own. */

@@ -12,6 +12,9 @@ typedef struct lq_origin {
 /* LQ_FORMAT where a fact is missing or unknown, or axes and channels are not those of the kind. */
 lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error);
 
+/* The same from the facts alone, whatever they are attached to. */
+lq_status lq_origin_of_facts(const lq_fact *facts, size_t count, lq_origin *origin, lq_error *error);
+
 /* "fgd, ggx, multiple scattering": what determines the numbers, on one line. */
 void lq_origin_describe(const lq_kind *kind, const lq_settings *settings, char *text, size_t size);
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, LAYOUT, KIND };
+enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND };
 
 static const cli_option options[] = {
     {AGAINST, "against", "exact|walk|OTHER",
@@ -21,8 +21,11 @@ static const cli_option options[] = {
     {SAMPLES, "samples", "N", "random walks per point (default 100000)"},
     {POINTS, "points", "P", "points, half of them stored entries (default 256)"},
     {SEED, "seed", "S", "of the points and of the walks (default 1)"},
-    {BUDGET, "budget", "E", "largest error that stored and interpolated values may have"},
+    {BUDGET, "budget", "E|max=E,p99=E|FILE",
+     "largest error that stored and interpolated values may have; by norm, or a budget file: certify"},
+    CERTIFY_OPTIONS,
     {FORMAT, "format", "text|json", "of the report (default text)"},
+    {JSON, "json", NULL, "the same as --format json"},
     CLI_SETTINGS_OPTIONS,
     CLI_THREADS_OPTION,
     {0},
@@ -46,7 +49,11 @@ static void print_notes(FILE *out) {
         "FILE alone is compared with the solver; --ndf, --scattering, --masking and --tolerance say what\n"
         "to compute, because it does not. Noise of independent samples is uncorrelated between\n"
         "neighbours, a bias is not. Exit code 2: --budget is exceeded or, without one, neither the\n"
-        "tolerances nor such noise explain the difference.\n");
+        "tolerances nor such noise explain the difference.\n\n"
+        "A certificate (--certificate, a budget by norm, --on, --junit, --report) takes 100000 exact values\n"
+        "anywhere between the nodes, uniform over the axes, searches for the worst point, states the\n"
+        "confidence of p99 and of the largest error, and checks physics; FILE is a table or the factors\n"
+        "of one. docs/certificates.md describes it and the budget file.\n");
 }
 
 static int run(int argc, char **argv);
@@ -60,6 +67,7 @@ const cli_verb cli_verb_validate = {
     .examples = "lacquer validate fgd.exr\n"
                 "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
                 "lacquer validate fgd.exr --budget 1e-3 --format json\n"
+                "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
                 "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate hard-cases",
@@ -91,6 +99,7 @@ static bool take_format(validate_request *request, const char *text) {
 
 static bool take(validate_request *request, int id, const char *value) {
     size_t threads = 0;
+    if (id >= CERTIFY_FIRST && id <= CERTIFY_LAST) return certify_take(&request->certify, id, value);
     if (id >= CLI_NDF && id < CLI_THREADS) return cli_settings_take(&request->settings, id, value) > 0;
     switch (id) {
     case AGAINST:
@@ -108,7 +117,11 @@ static bool take(validate_request *request, int id, const char *value) {
     case SEED:
         return cli_parse_count("--seed", value, 0, SIZE_MAX, &request->seed);
     case BUDGET:
+        if (strchr(value, '=') || !cli_number(value, &request->budget))
+            return certify_take_budget(&request->certify, value);
         return cli_parse_number("--budget", value, 1e-12, 1.0, &request->budget);
+    case JSON:
+        return request->json = true;
     case FORMAT:
         return take_format(request, value);
     case CLI_THREADS:
@@ -165,6 +178,7 @@ static bool suits(const validate_request *request) {
 static bool parse(validate_request *request, int argc, char **argv) {
     *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
     request->settings = cli_settings_default();
+    request->certify.budgets.count = 1;
     bool samples_given = false;
     cli_args args = cli_args_begin(&cli_verb_validate, argc, argv);
     for (int id; (id = cli_args_next(&args)) != CLI_END;) {
@@ -206,10 +220,26 @@ static int report(const validate_job *job) {
     return validate_complaint(job) ? CLI_EXCEEDED : CLI_DONE;
 }
 
+/* What the options that both ways of validating share say. */
+static int certify(validate_request *request) {
+    certify_request *c = &request->certify;
+    if (request->walk || request->other || request->layout >= 0)
+        return cli_fail(
+            "a certificate is made against the solver; drop --against, --layout or the budget by norm");
+    c->path = request->file;
+    c->points = request->points_given ? request->points : 0;
+    c->seed = request->seed;
+    c->threads = request->threads;
+    c->json = request->json;
+    if (request->budget > 0.0) c->budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
+    return validate_certify(c);
+}
+
 static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
+    if (job.request.certify.wanted) return certify(&job.request);
     if (job.request.other || job.request.layout >= 0) return validate_against(&job.request);
     lq_error error = {""};
     lq_status status = load(&job, &error);

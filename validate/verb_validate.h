@@ -7,6 +7,7 @@
 #include "validate/compare.h"
 #include "validate/draw.h"
 #include "validate/origin.h"
+#include "validate/verb_validate_certify.h"
 
 #include <stdbool.h>
 
@@ -22,6 +23,7 @@ typedef struct validate_request {
     int layout; /* of OTHER, or of FILE where there is none; -1: EXR */
     cli_settings settings;
     bool points_given;
+    certify_request certify;
 } validate_request;
 
 /* The lists, in the order they are reported. */

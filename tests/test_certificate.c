@@ -1,0 +1,289 @@
+/* test_certificate.c - certificates: binomial limits, where the points lie, planted errors that must be
+ * found. */
+#include "tests/expect.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/uniform.h"
+#include "validate/certificate_checks.h"
+#include "validate/certificate_confidence.h"
+
+/* ------------------------------------------------------------------------------- confidence */
+
+/* Chance of at most `hits` of `count` at a share p, added up. */
+static double binomial(int hits, int count, double p) {
+    double sum = 0.0, term = pow(1.0 - p, count);
+    for (int k = 0; k <= hits; k++) {
+        sum += term;
+        term *= (double)(count - k) / (k + 1) * p / (1.0 - p);
+    }
+    return sum;
+}
+
+static void test_limits_are_the_binomial_ones(void **state) {
+    (void)state;
+    assert_near(lq_share_limit(0, 100, 0.95), 1.0 - pow(0.05, 0.01), 1e-12);
+    const int cases[][2] = {{3, 100}, {10, 2000}, {0, 5}, {40, 50}};
+    for (size_t i = 0; i < 4; i++) {
+        const double limit = lq_share_limit(cases[i][0], cases[i][1], 0.95);
+        assert_near(binomial(cases[i][0], cases[i][1], limit), 0.05, 1e-9);
+    }
+    assert_near(lq_share_limit(7, 7, 0.95), 1.0, 0.0);
+    /* 0.99^n <= 0.05 from n = 299 on: fewer points settle no p99 */
+    assert_near(lq_quantile_rank(298, 0.99, 0.95), 298, 0.0);
+    assert_true(lq_quantile_rank(299, 0.99, 0.95) < 299);
+    assert_true(lq_quantile_rank(10000, 0.99, 0.95) > 9900 && lq_quantile_rank(10000, 0.99, 0.95) < 9930);
+}
+
+/* 400 blocks of 50: hits that know nothing of blocks, hits that come block by block. */
+static void test_effective_points_know_blocks(void **state) {
+    (void)state;
+    size_t apart[400], together[400];
+    for (size_t b = 0; b < 400; b++) {
+        apart[b] = 0;
+        for (size_t i = 0; i < 50; i++) apart[b] += uniform(50 * b + i) < 0.1;
+        together[b] = uniform(1000000 + b) < 0.1 ? 50 : 0;
+    }
+    assert_near(lq_effective_points(apart, 400, 50), 20000, 4000);
+    assert_near(lq_effective_points(together, 400, 50), 400, 10);
+}
+
+/* ------------------------------------------------------------------------------- the points */
+
+static lq_domain whole(const lq_kind *kind, double least) {
+    lq_domain domain = {.min = {0.0}};
+    for (int a = 0; a < kind->axis_count; a++) {
+        domain.min[a] = fmax(kind->axes[a].min, least);
+        domain.max[a] = kind->axes[a].max;
+    }
+    return domain;
+}
+
+/* Uniform along every axis: the largest gap to the straight line of the distribution function. */
+static void test_points_are_uniform(void **state) {
+    (void)state;
+    const lq_kind *kind = lq_kind_find("transmission", NULL);
+    const lq_domain domain = whole(kind, 0.02);
+    lq_block_plan plan;
+    assert_int_equal(lq_block_plan_make(&plan, kind, &domain, 20000, 5, NULL), LQ_OK);
+    assert_true(plan.count * plan.per_block >= 20000);
+    size_t below[LQ_MAX_AXES][20] = {{0}};
+    lq_block *block = malloc(sizeof *block);
+    for (size_t b = 0; b < plan.count; b++) {
+        lq_block_draw(&plan, b, block);
+        assert_int_equal(block->size[1], 1);
+        assert_int_equal(block->size[2], 1);
+        for (size_t i = 0; i < plan.per_block; i++) {
+            double point[LQ_MAX_AXES];
+            lq_block_point(block, 4, i, point);
+            for (int a = 0; a < 4; a++) {
+                const double u = (point[a] - domain.min[a]) / (domain.max[a] - domain.min[a]);
+                assert_true(u >= 0.0 && u <= 1.0);
+                for (int k = 0; k < 20; k++) below[a][k] += u < (k + 1) / 20.0;
+            }
+        }
+    }
+    for (int a = 0; a < 4; a++)
+        for (int k = 0; k < 20; k++)
+            assert_near((double)below[a][k] / (double)(plan.count * plan.per_block), (k + 1) / 20.0, 0.02);
+    free(block);
+    lq_block_plan_free(&plan);
+}
+
+/* ------------------------------------------------------------------------- planted decoders */
+
+/* The exact value plus a pyramid of height 0.01. */
+static const double bump_at[3] = {0.37, 0.61, 0.52};
+
+static double bump(const double *x) {
+    const double r = fmax(fabs(x[0] - bump_at[0]), fabs(x[1] - bump_at[1])) / 0.25;
+    return r < 1.0 ? 0.01 * (1.0 - r) : 0.0;
+}
+
+static double bumped(const void *settings, int channel, const double *point) {
+    double value, estimate;
+    (void)channel;
+    const lq_status status =
+        lq_eval(lq_kind_find("tir-loss", NULL), settings, point, &value, &estimate, NULL);
+    return status == LQ_OK || status == LQ_NOT_CONVERGED ? value + bump(point) : NAN;
+}
+
+static lq_certify_request bumped_request(lq_settings *settings) {
+    *settings = lq_settings_default();
+    settings->tolerance = 1e-6;
+    lq_certify_request request = {.kind = lq_kind_find("tir-loss", NULL), .points = 10000, .starts = 4};
+    request.settings = *settings;
+    request.domain = whole(request.kind, 0.05);
+    request.stages[0] = (lq_stage){"bumped", "bump", bumped, settings};
+    request.stage_count = 1;
+    request.seed = 3;
+    return request;
+}
+
+/* Its base is 0.5^2 of a domain of 0.95^2; a share s of that is off by more than (1 - sqrt(s)) 0.01. */
+static void test_planted_error_is_measured(void **state) {
+    (void)state;
+    lq_settings settings;
+    lq_certificate c;
+    const lq_certify_request request = bumped_request(&settings);
+    assert_int_equal(lq_certify(&request, NULL, &c, NULL), LQ_OK);
+    const double base = 0.5 * 0.5 / (0.95 * 0.95);
+    assert_near(c.total.mean, 0.01 / 3.0 * base, 0.1 * 0.01 / 3.0 * base);
+    assert_near(c.total.rms, 0.01 * sqrt(base / 6.0), 0.1 * 0.01 * sqrt(base / 6.0));
+    const double p99 = 0.01 * (1.0 - sqrt(0.01 / base));
+    assert_near(c.total.p99, p99, 3e-4);
+    assert_true(c.total.p99_limit > p99 && c.total.p99_limit < 0.0095);
+    /* the tip: by the search, not by the sample */
+    assert_true(c.total.max < 0.01 - 2e-5);
+    assert_near(c.found.error, 0.01, 2e-5);
+    assert_near(c.found.at[0], bump_at[0], 6e-4);
+    assert_near(c.found.at[1], bump_at[1], 6e-4);
+    assert_near(c.max, c.found.error, 0.0);
+    assert_near(c.unseen, 1.0 - pow(0.05, 1.0 / (double)c.plan.count), 1e-12);
+    lq_certificate_free(&c);
+}
+
+static void test_threads_change_no_bit(void **state) {
+    (void)state;
+    lq_settings settings;
+    lq_certificate one, three;
+    lq_certify_request request = bumped_request(&settings);
+    request.points = 640;
+    request.threads = 1;
+    assert_int_equal(lq_certify(&request, NULL, &one, NULL), LQ_OK);
+    request.threads = 3;
+    assert_int_equal(lq_certify(&request, NULL, &three, NULL), LQ_OK);
+    assert_memory_equal(one.exact, three.exact, one.points * sizeof *one.exact);
+    assert_memory_equal(&one.total, &three.total, sizeof one.total);
+    assert_memory_equal(one.found.at, three.found.at, sizeof one.found.at);
+    assert_near(one.found.error, three.found.error, 0.0);
+    lq_certificate_free(&one);
+    lq_certificate_free(&three);
+}
+
+/* --------------------------------------------------------------------- a table that is damaged */
+
+static lq_table *loss_table(size_t size) {
+    const lq_kind *kind = lq_kind_find("tir-loss", NULL);
+    const lq_settings settings = lq_settings_default();
+    lq_axis axes[3];
+    for (int a = 0; a < 3; a++)
+        assert_int_equal(lq_axis_make(&axes[a], kind->axes[a].name, 0.0, 1.0, size, LQ_MAP_LINEAR, 1.0, NULL),
+                         LQ_OK);
+    lq_table *table;
+    assert_int_equal(lq_precompute(kind, &settings, axes, NULL, &table, NULL), LQ_OK);
+    for (int a = 0; a < 3; a++) lq_axis_free(&axes[a]);
+    return table;
+}
+
+static const lq_check *check_named(const lq_certified *certified, const char *name) {
+    for (int i = 0; i < certified->check_count; i++)
+        if (strcmp(certified->checks[i].name, name) == 0) return &certified->checks[i];
+    fail_msg("no check '%s'", name);
+    return NULL;
+}
+
+static void certify(lq_certified *certified, lq_table *table, size_t points) {
+    lq_certify_options options = {.points = points, .seed = 1};
+    memset(certified, 0, sizeof *certified);
+    certified->subject.table = table;
+    assert_int_equal(lq_origin_of(table, &certified->subject.origin, NULL), LQ_OK);
+    assert_int_equal(lq_ranges_parse(&options.rule, "mu=0.05:1,alpha=0.1:1", NULL), LQ_OK);
+    assert_int_equal(lq_budget_parse(&options.rule.budget, "max=0.2,p99=0.05", NULL), LQ_OK);
+    assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
+}
+
+/* One of 35937 entries off by 2 %, at four places of the table, a corner among steps included: too little to
+ * exceed the budget, and seen.
+ */
+static void test_one_entry_of_many_is_caught(void **state) {
+    (void)state;
+    lq_certified *certified = malloc(sizeof *certified);
+    certify(certified, loss_table(33), 2000);
+    assert_null(lq_certified_failure(certified));
+    const double before = check_named(certified, "stored entries")->value;
+    assert_true(before <= 1e-5);
+    lq_table *table = certified->subject.table;
+    const size_t places[] = {5, 33 * 33 * 16 + 33 * 16 + 16, 33 * 33 * 3 + 33 * 30 + 2,
+                             33 * 33 * 31 + 33 * 9 + 1};
+    certified->subject.table = NULL;
+    lq_certified_free(certified);
+    for (size_t i = 0; i < 4; i++) {
+        float *entry = &table->channels[0][places[i]], kept = *entry;
+        if (kept < 0.01f) fail_msg("entry %zu is too small to tell", places[i]);
+        *entry = 1.02f * kept;
+        certify(certified, table, 2000);
+        const lq_check *stored = check_named(certified, "stored entries");
+        if (stored->outcome != LQ_FAILED)
+            fail_msg("entry %zu of value %g: %.3g; %s", places[i], (double)kept, stored->value, stored->detail);
+        assert_near(stored->value, 0.02 * (double)kept, 1e-5);
+        *entry = kept;
+        certified->subject.table = NULL;
+        lq_certified_free(certified);
+    }
+    table->channels[0][77] = NAN;
+    certify(certified, table, 2000);
+    assert_int_equal(check_named(certified, "range stored")->outcome, LQ_FAILED);
+    lq_certified_free(certified);
+    free(certified);
+}
+
+/* A hole of zeros, and values that fall where the exact ones rise. */
+static void test_physics_is_checked(void **state) {
+    (void)state;
+    lq_certified *certified = malloc(sizeof *certified);
+    lq_table *table = loss_table(17);
+    for (size_t i = 0; i < 17; i++)
+        for (size_t k = 4; k < 7; k++)
+            for (size_t m = 2; m < 9; m++) table->channels[0][m + 17 * (i + 17 * k)] = 0.0f;
+    certify(certified, table, 4000);
+    assert_int_equal(check_named(certified, "false zeros")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(certified, "monotony")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(certified, "banding")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(certified, "budget max")->outcome, LQ_FAILED);
+    lq_certified_free(certified);
+    free(certified);
+}
+
+/* ---------------------------------------------------------------------------------- budgets */
+
+static void test_budgets_are_read(void **state) {
+    (void)state;
+    lq_budget budget;
+    lq_error error;
+    assert_int_equal(lq_budget_parse(&budget, "p99=2e-3,max=1e-2", NULL), LQ_OK);
+    assert_near(budget.bound[LQ_NORM_MAX], 1e-2, 0.0);
+    assert_near(budget.bound[LQ_NORM_P99], 2e-3, 0.0);
+    assert_near(budget.bound[LQ_NORM_RMS], 0.0, 0.0);
+    assert_int_equal(lq_budget_parse(&budget, "5e-3", NULL), LQ_OK);
+    assert_near(budget.bound[LQ_NORM_MAX], 5e-3, 0.0);
+    const char *const bad[] = {"",      "max",      "max=",      "max=0",
+                               "max=2", "p98=1e-2", "max=1e-2,", "max=1e-2;p99=1"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(lq_budget_parse(&budget, bad[i], &error), LQ_BAD_INPUT);
+        assert_non_null(strstr(error.text, "max=1e-2,p99=2e-3"));
+    }
+    lq_rule rule = {.table = ""};
+    assert_int_equal(lq_ranges_parse(&rule, "mu=0.02:1,tau=0.1:0.9", NULL), LQ_OK);
+    assert_int_equal(rule.range_count, 2);
+    assert_string_equal(rule.ranges[1].axis, "tau");
+    assert_near(rule.ranges[1].max, 0.9, 0.0);
+    assert_int_equal(lq_ranges_parse(&rule, "mu=1:0.02", NULL), LQ_BAD_INPUT);
+    assert_int_equal(lq_ranges_parse(&rule, "mu", NULL), LQ_BAD_INPUT);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limits_are_the_binomial_ones),
+        cmocka_unit_test(test_effective_points_know_blocks),
+        cmocka_unit_test(test_points_are_uniform),
+        cmocka_unit_test(test_planted_error_is_measured),
+        cmocka_unit_test(test_threads_change_no_bit),
+        cmocka_unit_test(test_one_entry_of_many_is_caught),
+        cmocka_unit_test(test_physics_is_checked),
+        cmocka_unit_test(test_budgets_are_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

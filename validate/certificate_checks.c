@@ -1,0 +1,110 @@
+/* A certificate from a subject: domain, sample, search, and the list of judgements. */
+#include "validate/certificate_checks.h"
+
+#include "precompute/evaluator.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void lq_check_add(lq_certified *certified, const char *name, double value, double limit, const char *format,
+                  ...) {
+    if (certified->check_count == LQ_CHECKS_MAX) return;
+    lq_check *check = &certified->checks[certified->check_count++];
+    *check = (lq_check){.value = value, .limit = limit};
+    check->outcome = isnan(limit) ? LQ_NOTED : value <= limit ? LQ_PASSED : LQ_FAILED;
+    snprintf(check->name, sizeof check->name, "%s", name);
+    if (!format) return;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(check->detail, sizeof check->detail, format, list);
+    va_end(list);
+}
+
+void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t size) {
+    size_t used = 0;
+    if (size > 0) text[0] = '\0';
+    for (int a = 0; a < kind->axis_count && used < size; a++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%.5g", a ? " " : "", kind->axes[a].name,
+                                 point[a]);
+}
+
+const lq_check *lq_certified_failure(const lq_certified *certified) {
+    for (int i = 0; i < certified->check_count; i++)
+        if (certified->checks[i].outcome == LQ_FAILED) return &certified->checks[i];
+    return NULL;
+}
+
+void lq_check_budget(lq_certified *certified) {
+    const lq_certificate *c = &certified->certificate;
+    const double values[LQ_NORMS] = {c->max, c->total.p99, c->total.rms, c->total.mean};
+    for (int n = 0; n < LQ_NORMS; n++) {
+        const double bound = certified->budget.bound[n];
+        char name[40], at[160] = "";
+        if (!(bound > 0.0)) continue;
+        snprintf(name, sizeof name, "budget %s", lq_norm_name((lq_norm)n));
+        if (n == LQ_NORM_MAX) {
+            const bool searched = c->found.error >= c->total.max;
+            const size_t axes = (size_t)c->request.kind->axis_count;
+            lq_point_text(c->request.kind, searched ? c->found.at : c->at + c->total.worst % c->points * axes,
+                          at, sizeof at);
+            lq_check_add(certified, name, values[n], bound, "at %s", at);
+        } else if (n == LQ_NORM_P99) {
+            lq_check_add(certified, name, values[n], bound, "%s with 95 %% confidence",
+                         c->total.p99_limit <= bound ? "met" : "not settled");
+        } else {
+            lq_check_add(certified, name, values[n], bound, NULL);
+        }
+    }
+}
+
+/* ----------------------------------------------------------------------------------- the whole */
+
+/* Kinds without an axis that shares a solve get fewer points. */
+static size_t choose_points(const lq_certify_options *options, const lq_kind *kind) {
+    if (options->points > 0) return options->points;
+    bool shares = false;
+    const int slice = lq_evaluator_find(kind->id)->slice_axis;
+    for (int a = 0; a < kind->axis_count; a++) shares |= a != slice && strcmp(kind->axes[a].name, "eta") != 0;
+    return shares ? LQ_CERTIFICATE_POINTS : LQ_CERTIFICATE_SOLVES;
+}
+
+/* A fraction of the least bound: the solver's own error must not matter. */
+static double choose_tolerance(const lq_certify_options *options, const lq_kind *kind) {
+    double tolerance = 1e-4;
+    if (options->tolerance > 0.0) return options->tolerance;
+    for (int n = 0; n < LQ_NORMS; n++)
+        if (options->rule.budget.bound[n] > 0.0)
+            tolerance = fmin(tolerance, 0.05 * options->rule.budget.bound[n]);
+    return fmax(tolerance, kind->finest_tolerance);
+}
+
+lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *options,
+                            const lq_progress *progress, lq_error *error) {
+    const lq_subject *subject = &certified->subject;
+    const lq_kind *kind = subject->origin.kind;
+    lq_certify_request request = {.kind = kind,
+                                  .settings = subject->origin.settings,
+                                  .domain = lq_subject_domain(subject),
+                                  .points = choose_points(options, kind),
+                                  .starts = LQ_CERTIFICATE_STARTS,
+                                  .seed = options->seed,
+                                  .threads = options->threads};
+    request.stage_count = lq_subject_stages(subject, request.stages);
+    request.settings.tolerance = choose_tolerance(options, kind);
+    request.settings.threads = options->threads;
+    certified->budget = options->rule.budget;
+    lq_status status = lq_domain_cut(&request.domain, kind, &options->rule, error);
+    if (status == LQ_OK) status = lq_certify(&request, progress, &certified->certificate, error);
+    if (status != LQ_OK) return status;
+    lq_check_budget(certified);
+    lq_check_physics(certified);
+    status = lq_check_bands(certified, error);
+    return status == LQ_OK ? lq_check_stored(certified, error) : status;
+}
+
+void lq_certified_free(lq_certified *certified) {
+    lq_certificate_free(&certified->certificate);
+    lq_subject_free(&certified->subject);
+}

@@ -1,0 +1,61 @@
+/* The judgements of a certificate: each one line with a value, its limit and where, passed or failed. */
+#ifndef LACQUER_VALIDATE_CERTIFICATE_CHECKS_H
+#define LACQUER_VALIDATE_CERTIFICATE_CHECKS_H
+
+#include "validate/certificate_budget.h"
+#include "validate/certificate_subject.h"
+
+typedef enum lq_outcome { LQ_PASSED, LQ_FAILED, LQ_NOTED /* measured, not judged */ } lq_outcome;
+
+typedef struct lq_check {
+    char name[40]; /* "budget max", "range decoded" */
+    lq_outcome outcome;
+    double value, limit; /* limit NAN: none */
+    char detail[240];
+} lq_check;
+
+enum { LQ_CHECKS_MAX = 48 };
+
+/* One table with its certificate and everything judged. */
+typedef struct lq_certified {
+    lq_subject subject;
+    lq_budget budget;
+    lq_certificate certificate;
+    int check_count;
+    lq_check checks[LQ_CHECKS_MAX];
+} lq_certified;
+
+/* Adds one: failed where value > limit or NaN, noted where limit is NaN. `format` makes the detail; may be
+ * NULL. */
+void lq_check_add(lq_certified *certified, const char *name, double value, double limit, const char *format,
+                  ...) __attribute__((format(printf, 5, 6)));
+
+/* "mu=0.1 alpha=0.5" of a point, into `text`. */
+void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t size);
+
+/* The first failed check, or NULL. */
+const lq_check *lq_certified_failure(const lq_certified *certified);
+
+/* What a whole certificate is made of. */
+typedef struct lq_certify_options {
+    lq_rule rule;     /* budget and domain */
+    size_t points;    /* 0: LQ_CERTIFICATE_POINTS, or fewer where every value costs a solve */
+    double tolerance; /* of the exact values; 0: that of the kind */
+    uint64_t seed;
+    int threads;
+} lq_certify_options;
+
+enum { LQ_CERTIFICATE_POINTS = 100000, LQ_CERTIFICATE_SOLVES = 2048, LQ_CERTIFICATE_STARTS = 4 };
+
+/* Sample, search and judge the subject that is in `certified`. */
+lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *options,
+                            const lq_progress *progress, lq_error *error);
+void lq_certified_free(lq_certified *certified);
+
+/* Parts of the above, each in a file of its own. */
+void lq_check_budget(lq_certified *certified);
+void lq_check_physics(lq_certified *certified);
+lq_status lq_check_stored(lq_certified *certified, lq_error *error);
+lq_status lq_check_bands(lq_certified *certified, lq_error *error);
+
+#endif

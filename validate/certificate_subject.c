@@ -1,0 +1,121 @@
+/* Reads tables and factors, and makes the factors as they may have been before they were rounded to half. */
+#include "validate/certificate_subject.h"
+
+#include "pca/factors.h"
+#include "tables/half.h"
+#include "tables/status.h"
+#include "validate/stream.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ----------------------------------------------------------------------- texels before rounding */
+
+/* A value that is as likely as any to have been rounded to `half`: between the middles to its neighbours. */
+static float before_rounding(float half, double u) {
+    const uint16_t bits = lq_half_from_float(half);
+    const double up = (double)lq_half_to_float((uint16_t)(bits + 1));
+    const double x = (double)half, gap = isfinite(up) ? fabs(up - x) : 0.0;
+    return half == 0.0f ? 0.0f : (float)(x + (u - 0.5) * gap);
+}
+
+/* Purpose of the random stream. */
+enum { STREAM_TEXELS = 0x746578 };
+
+static void unround(lq_factored *factored) {
+    uint64_t number = 0;
+    for (int p = 0; p < factored->piece_count; p++)
+        for (int f = 0; f < factored->pieces[p].factor_count; f++, number++) {
+            lq_factor *factor = &factored->pieces[p].factors[f];
+            const size_t values = lq_factor_texels(factor) * factor->base_count;
+            lq_stream stream = lq_stream_open(0, STREAM_TEXELS, number);
+            for (size_t i = 0; i < values; i++)
+                factor->data[i] = before_rounding(factor->data[i], lq_stream_uniform(&stream));
+        }
+}
+
+/* ------------------------------------------------------------------------------------- reading */
+
+static lq_status check_axes(const lq_factored *factored, const lq_kind *kind, lq_error *error) {
+    if (factored->axis_count != kind->axis_count)
+        return lq_fail(error, LQ_FORMAT, "%d axes, but table '%s' has %d", factored->axis_count, kind->id,
+                       kind->axis_count);
+    for (int a = 0; a < kind->axis_count; a++)
+        if (strcmp(factored->axes[a].name, kind->axes[a].name) != 0)
+            return lq_fail(error, LQ_FORMAT, "axis %d is '%s', but '%s' in table '%s'", a + 1,
+                           factored->axes[a].name, kind->axes[a].name, kind->id);
+    if (kind->channel_count != 1)
+        return lq_fail(error, LQ_FORMAT, "factors hold one channel, table '%s' has %d", kind->id,
+                       kind->channel_count);
+    return LQ_OK;
+}
+
+static lq_status read_factored(lq_subject *s, const char *path, lq_error *error) {
+    lq_status status = lq_factored_read(&s->factored, path, error);
+    if (status == LQ_OK) status = lq_factored_read(&s->unrounded, path, error);
+    if (status == LQ_OK)
+        status = lq_origin_of_facts(s->factored->facts, s->factored->fact_count, &s->origin, error);
+    if (status == LQ_OK) status = check_axes(s->factored, s->origin.kind, error);
+    if (status == LQ_OK) unround(s->unrounded);
+    return status;
+}
+
+lq_status lq_subject_read(lq_subject *s, const char *path, lq_error *error) {
+    *s = (lq_subject){.table = NULL};
+    const char *slash = strrchr(path, '/');
+    snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
+    lq_error cause = {""};
+    lq_status status = lq_table_read_exr(&s->table, path, error);
+    if (status != LQ_OK) return status;
+    if (lq_table_fact(s->table, "factors")) {
+        lq_table_free(s->table);
+        s->table = NULL;
+        status = read_factored(s, path, &cause);
+    } else {
+        status = lq_origin_of(s->table, &s->origin, &cause);
+    }
+    return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", path, cause.text);
+}
+
+lq_status lq_subject_add_table(lq_subject *s, const char *path, lq_error *error) {
+    lq_origin origin;
+    lq_error cause = {""};
+    lq_status status = lq_table_read_exr(&s->table, path, error);
+    if (status != LQ_OK) return status;
+    status = lq_origin_of(s->table, &origin, &cause);
+    if (status == LQ_OK && origin.kind != s->origin.kind)
+        status = lq_fail(&cause, LQ_BAD_INPUT, "a table of kind '%s', but the factors are of '%s'",
+                         origin.kind->id, s->origin.kind->id);
+    return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", path, cause.text);
+}
+
+void lq_subject_free(lq_subject *s) {
+    lq_table_free(s->table);
+    lq_factored_free(s->factored);
+    lq_factored_free(s->unrounded);
+    *s = (lq_subject){.table = NULL};
+}
+
+/* ------------------------------------------------------------------------------------ decoders */
+
+lq_domain lq_subject_domain(const lq_subject *s) {
+    lq_domain domain = {.min = {0.0}};
+    for (int a = 0; a < s->origin.kind->axis_count; a++) {
+        domain.min[a] = s->factored ? s->factored->axes[a].min : s->table->axes[a].min;
+        domain.max[a] = s->factored ? s->factored->axes[a].max : s->table->axes[a].max;
+    }
+    return domain;
+}
+
+int lq_subject_stages(const lq_subject *s, lq_stage *stages) {
+    int count = 0;
+    if (s->table) stages[count++] = (lq_stage){"table", "interpolation", lq_decode_table, s->table};
+    if (!s->factored) return count;
+    stages[count] = (lq_stage){"unrounded", count ? "factorisation" : "table and factors", lq_decode_factored,
+                               s->unrounded};
+    stages[++count] = (lq_stage){"factors", "half-float", lq_decode_factored, s->factored};
+    stages[++count] = (lq_stage){"gpu", "filter", lq_decode_gpu, s->factored};
+    return count + 1;
+}

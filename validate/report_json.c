@@ -1,0 +1,103 @@
+/* Certificates as JSON: docs/certificates.md lists the members. */
+#include "validate/report.h"
+
+#include "tables/status.h"
+#include "validate/certificate_confidence.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* JSON knows no infinity: such a number becomes null. */
+static json_t *number(double x) {
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *point_json(const lq_kind *kind, const double *at) {
+    json_t *root = json_object();
+    for (int a = 0; a < kind->axis_count; a++) json_object_set_new(root, kind->axes[a].name, number(at[a]));
+    return root;
+}
+
+static json_t *figures_json(const lq_certificate *c, const lq_figures *f) {
+    const size_t axes = (size_t)c->request.kind->axis_count;
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "max", number(f->max), "p99", number(f->p99),
+                     "p99_limit", number(f->p99_limit), "rms", number(f->rms), "mean", number(f->mean),
+                     "bias", number(f->bias), "effective_points", number(f->effective), "worst",
+                     point_json(c->request.kind, c->at + f->worst % c->points * axes));
+}
+
+static json_t *stages_json(const lq_certificate *c) {
+    json_t *list = json_array();
+    for (int s = 0; s < c->request.stage_count; s++)
+        for (int k = 0; k < c->request.kind->channel_count; k++)
+            json_array_append_new(
+                list,
+                json_pack("{s:s, s:s, s:s, s:o, s:o}", "stage", c->request.stages[s].name, "channel",
+                          c->request.kind->channels[k], "part", c->request.stages[s].part, "error",
+                          figures_json(c, &c->error[s][k]), "difference", figures_json(c, &c->part[s][k])));
+    return list;
+}
+
+static json_t *domain_json(const lq_certificate *c) {
+    json_t *root = json_object();
+    for (int a = 0; a < c->request.kind->axis_count; a++)
+        json_object_set_new(root, c->request.kind->axes[a].name,
+                            json_pack("[f, f]", c->request.domain.min[a], c->request.domain.max[a]));
+    return root;
+}
+
+static json_t *found_json(const lq_certificate *c) {
+    json_t *root = point_json(c->request.kind, c->found.at);
+    json_object_set_new(root, "decoded", number(c->found.decoded));
+    json_object_set_new(root, "exact", number(c->found.exact));
+    json_object_set_new(root, "error", number(c->found.error));
+    json_object_set_new(root, "evaluations", json_integer((json_int_t)c->found.evaluations));
+    return root;
+}
+
+static json_t *checks_json(const lq_certified *certified) {
+    static const char *const words[] = {[LQ_PASSED] = "passed", [LQ_FAILED] = "failed", [LQ_NOTED] = "noted"};
+    json_t *list = json_array();
+    for (int i = 0; i < certified->check_count; i++) {
+        const lq_check *check = &certified->checks[i];
+        json_array_append_new(list, json_pack("{s:s, s:s, s:o, s:o, s:s}", "check", check->name, "outcome",
+                                              words[check->outcome], "value", number(check->value), "limit",
+                                              number(check->limit), "detail", check->detail));
+    }
+    return list;
+}
+
+static json_t *certified_json(const lq_certified *certified) {
+    const lq_certificate *c = &certified->certificate;
+    const lq_check *failed = lq_certified_failure(certified);
+    json_t *root = json_pack("{s:s, s:s, s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:b}", "file",
+                             certified->subject.name, "table", c->request.kind->id, "ndf",
+                             certified->subject.origin.settings.ndf, "domain", domain_json(c), "points",
+                             (json_int_t)(c->points * (size_t)c->request.kind->channel_count), "blocks",
+                             (json_int_t)c->plan.count, "seed", (json_int_t)c->request.seed, "solver_error",
+                             number(c->estimate), "total", figures_json(c, &c->total), "stages",
+                             stages_json(c), "search", found_json(c), "unseen_share", number(c->unseen),
+                             "checks", checks_json(certified), "passed", !failed);
+    if (root) json_object_set_new(root, "complaint", failed ? json_string(failed->name) : json_null());
+    return root;
+}
+
+lq_status lq_report_json(const lq_certified *list, size_t count, char **text, lq_error *error) {
+    bool passed = true;
+    json_t *tables = json_array();
+    for (size_t i = 0; i < count; i++) {
+        json_t *one = certified_json(&list[i]);
+        if (!one) {
+            json_decref(tables);
+            return lq_fail(error, LQ_FORMAT, "'%s' or its facts are not valid UTF-8", list[i].subject.name);
+        }
+        json_array_append_new(tables, one);
+        passed = passed && !lq_certified_failure(&list[i]);
+    }
+    json_t *root =
+        json_pack("{s:f, s:b, s:o}", "confidence", LQ_CONFIDENCE, "passed", passed, "tables", tables);
+    *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(root);
+    return *text ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a report");
+}

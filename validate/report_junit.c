@@ -1,0 +1,65 @@
+/* Certificates as JUnit XML, which build servers read: a table is a suite, a judgement a case. */
+#include "validate/report.h"
+
+#include "tables/output.h"
+
+#include <math.h>
+
+/* Text of an attribute or element; what XML cannot hold becomes '?'. */
+static lq_status put_text(lq_output *out, const char *text, lq_error *error) {
+    lq_status status = LQ_OK;
+    for (const char *c = text; *c && status == LQ_OK; c++) {
+        const char *code = *c == '<'   ? "&lt;"
+                           : *c == '>' ? "&gt;"
+                           : *c == '&' ? "&amp;"
+                           : *c == '"' ? "&quot;"
+                                       : NULL;
+        const char plain = (unsigned char)*c < ' ' ? '?' : *c;
+        status = code ? lq_output_print(out, error, "%s", code) : lq_output_write(out, &plain, 1, error);
+    }
+    return status;
+}
+
+static lq_status put_case(lq_output *out, const lq_certified *certified, const lq_check *check,
+                          lq_error *error) {
+    lq_status status = lq_output_print(out, error, "    <testcase classname=\"");
+    if (status == LQ_OK) status = put_text(out, certified->subject.name, error);
+    if (status == LQ_OK) status = lq_output_print(out, error, "\" name=\"");
+    if (status == LQ_OK) status = put_text(out, check->name, error);
+    if (status == LQ_OK && check->outcome == LQ_FAILED)
+        status = lq_output_print(out, error, "\">\n      <failure message=\"%.3e exceeds %.3e\">",
+                                 check->value, check->limit);
+    else if (status == LQ_OK)
+        status = lq_output_print(out, error, "\">\n      <system-out>%.3e%s ", check->value,
+                                 check->outcome == LQ_NOTED ? ", not judged" : "");
+    if (status == LQ_OK) status = put_text(out, check->detail, error);
+    if (status == LQ_OK)
+        status = lq_output_print(out, error, "</%s>\n    </testcase>\n",
+                                 check->outcome == LQ_FAILED ? "failure" : "system-out");
+    return status;
+}
+
+static lq_status put_suite(lq_output *out, const lq_certified *certified, lq_error *error) {
+    int failures = 0;
+    for (int i = 0; i < certified->check_count; i++) failures += certified->checks[i].outcome == LQ_FAILED;
+    lq_status status = lq_output_print(out, error, "  <testsuite name=\"");
+    if (status == LQ_OK) status = put_text(out, certified->subject.name, error);
+    if (status == LQ_OK)
+        status = lq_output_print(out, error, "\" tests=\"%d\" failures=\"%d\" errors=\"0\">\n",
+                                 certified->check_count, failures);
+    for (int i = 0; status == LQ_OK && i < certified->check_count; i++)
+        status = put_case(out, certified, &certified->checks[i], error);
+    return status == LQ_OK ? lq_output_print(out, error, "  </testsuite>\n") : status;
+}
+
+lq_status lq_report_junit(const lq_certified *list, size_t count, const char *path, lq_error *error) {
+    lq_output *out;
+    lq_status status = lq_output_open(&out, path, error);
+    if (status != LQ_OK) return status;
+    status = lq_output_print(out, error, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    for (size_t i = 0; status == LQ_OK && i < count; i++) status = put_suite(out, &list[i], error);
+    if (status == LQ_OK) status = lq_output_print(out, error, "</testsuites>\n");
+    if (status == LQ_OK) return lq_output_commit(out, error);
+    lq_output_abandon(out);
+    return status;
+}
