@@ -138,6 +138,13 @@ lq_status lq_table_write_exr(const lq_table *table, const char *path, lq_error *
 lq_status lq_table_read_exr(lq_table **table, const char *path, lq_error *error);
 lq_status lq_table_write_npy(const lq_table *table, const char *path, lq_error *error);
 
+/* A table of anybody's: .npy (float16, float32, float64, C order), EXR (scan lines, one part), or else the
+ * numbers of a C array, with a JSON text `description` that says what it is and where its nodes are
+ * (docs/foreign.md). The result has the axes of its kind in their order, and the facts stated. LQ_FORMAT
+ * where the file is not what is described, LQ_BAD_INPUT where the description is not understood. */
+lq_status lq_table_read_described(lq_table **table, const char *path, const char *description,
+                                  lq_error *error);
+
 /* Binary layouts that published renderers load (docs/formats.md). None says what it holds: the layout and the
  * kind must be known. A table read from one has the facts of its kind and "layout", but no "tolerance": the
  * file does not say how it was made. "ndf" is that the layout is published for; Mitsuba's is for any, and has

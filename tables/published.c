@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "tables/axis.h"
+#include "tables/input.h"
 #include "tables/output.h"
 #include "tables/published.h"
 #include "tables/status.h"
@@ -60,22 +60,10 @@ static const lq_stored *find(lq_layout layout, const char *kind, lq_error *error
  * ====================================================================================== */
 
 static lq_status read_file(lq_bytes *file, const char *path, lq_error *error) {
-    struct stat there;
+    char *data;
     *file = (lq_bytes){.data = NULL};
-    FILE *in = fopen(path, "rb");
-    if (!in) return lq_fail(error, LQ_IO, "cannot read %s: %m", path);
-    lq_status status = LQ_OK;
-    if (fstat(fileno(in), &there) != 0 || !S_ISREG(there.st_mode))
-        status = lq_fail(error, LQ_IO, "cannot read %s: not a regular file", path);
-    if (status == LQ_OK) {
-        file->size = (size_t)there.st_size;
-        file->data = malloc(file->size + 1);
-        if (!file->data) status = lq_fail(error, LQ_NO_MEMORY, "no memory for %zu bytes", file->size);
-    }
-    if (status == LQ_OK && fread(file->data, 1, file->size, in) != file->size)
-        status = lq_fail(error, LQ_IO, "cannot read %s: it ends early", path);
-    fclose(in);
-    if (status != LQ_OK) free(file->data);
+    const lq_status status = lq_input_read(path, &data, &file->size, error);
+    if (status == LQ_OK) file->data = (unsigned char *)data;
     return status;
 }
 

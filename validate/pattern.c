@@ -30,6 +30,7 @@ const char *lq_sampling_name(lq_sampling sampling) {
 const char *lq_verdict_text(lq_verdict verdict) {
     static const char *const texts[] = {
         [LQ_AGREES] = "the two agree within their tolerances",
+        [LQ_SPOTS] = "isolated wrong entries: all others agree",
         [LQ_MISPLACED] = "misplaced nodes: another sampling of an axis explains most of the difference",
         [LQ_NOISE] = "noise: neighbours are uncorrelated and the mean is 0",
         [LQ_OFFSET] = "noise around an offset: neighbours are uncorrelated, but the mean is not 0",
@@ -51,6 +52,34 @@ static void measure_all(residuals *r, lq_pattern *p, double *max) {
         if (isfinite(size)) square += size * size;
     }
     p->read_rms = sqrt(square / (double)r->count);
+}
+
+/* Few entries beyond the allowance, each of them far beyond what scatters within it. */
+static size_t count_spots(const residuals *r, double allowance) {
+    size_t beyond = 0;
+    double square = 0.0, least = INFINITY;
+    for (size_t i = 0; i < r->count; i++) {
+        const double size = isfinite(r->d[i]) ? fabs(r->d[i]) : INFINITY;
+        if (size <= allowance) {
+            square += size * size;
+            continue;
+        }
+        beyond++;
+        least = fmin(least, size);
+    }
+    const bool few = beyond == 1 || 100 * beyond <= r->count;
+    const bool far = r->count > beyond && least > outlying * sqrt(square / (double)(r->count - beyond));
+    return few && far ? beyond : 0;
+}
+
+/* Zeros that are none: a texel never written, a guard against division. */
+static void count_zeros(const residuals *r, double allowance, lq_pattern *p) {
+    const double small = fmax(10.0 * allowance, 1e-3);
+    for (size_t i = r->count; i-- > 0;) {
+        if (r->values[i] != 0.0f || !(fabs((double)r->reference[i]) > small)) continue;
+        p->zeros++;
+        p->zero_at = i;
+    }
 }
 
 /* The rms again and again without what lies beyond, until nothing more does. */
@@ -153,6 +182,7 @@ static void resample_all(const residuals *r, lq_pattern *p) {
 
 static lq_verdict judge(const lq_pattern *p, double max, double allowance) {
     if (max <= allowance) return LQ_AGREES;
+    if (p->spots > 0) return LQ_SPOTS;
     if (p->best_axis >= 0 && p->sampled[p->best_axis][p->best_sampling] < 0.5 * p->read_rms)
         return LQ_MISPLACED;
     const bool centred = fabs(p->z_mean) < lq_z_limit(1);
@@ -175,6 +205,8 @@ lq_status lq_pattern_of(const lq_table *table, const lq_table *reference, int ch
     if (!r.d) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu differences", r.count);
     double max;
     measure_all(&r, pattern, &max);
+    pattern->spots = count_spots(&r, allowance);
+    count_zeros(&r, allowance, pattern);
     drop_outliers(&r, pattern);
     correlate_all(&r, pattern);
     resample_all(&r, pattern);

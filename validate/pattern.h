@@ -22,6 +22,7 @@ const char *lq_sampling_name(lq_sampling sampling);
 
 typedef enum lq_verdict {
     LQ_AGREES,    /* no entry is off by more than the allowance */
+    LQ_SPOTS,     /* at most one entry in a hundred is off, by far more than all the others */
     LQ_MISPLACED, /* another sampling halves the rms */
     LQ_NOISE,     /* uncorrelated, mean 0 */
     LQ_OFFSET,    /* uncorrelated around a mean that is not 0 */
@@ -34,6 +35,9 @@ typedef enum lq_verdict {
 const char *lq_verdict_text(lq_verdict verdict);
 
 typedef struct lq_pattern {
+    size_t spots;    /* isolated wrong entries, see LQ_SPOTS */
+    size_t zeros;    /* entries that are exactly 0 where the reference is not, by far */
+    size_t zero_at;  /* the first of them */
     size_t outliers; /* entries beyond 8 rms, left out of all below but `sampled` */
     double rms, mean;
     double correlation[LQ_MAX_AXES]; /* of neighbours along each axis; 0 on axes of one node */

@@ -11,13 +11,15 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND };
+enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE };
 
 static const cli_option options[] = {
     {AGAINST, "against", "exact|walk|OTHER",
      "the solver; random walks as well; another table, EXR or published (default exact)"},
     {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table"},
     {KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
+    {AXES, "axes", "AXES.json", "FILE is a .npy, EXR or C array of anybody's, described there"},
+    {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong"},
     {SAMPLES, "samples", "N", "random walks per point (default 100000)"},
     {POINTS, "points", "P", "points, half of them stored entries (default 256)"},
     {SEED, "seed", "S", "of the points and of the walks (default 1)"},
@@ -48,8 +50,9 @@ static void print_notes(FILE *out) {
         "drawn at random; where FILE has other nodes, what it says it holds is computed there. A published\n"
         "FILE alone is compared with the solver; --ndf, --scattering, --masking and --tolerance say what\n"
         "to compute, because it does not. Noise of independent samples is uncorrelated between\n"
-        "neighbours, a bias is not. Exit code 2: --budget is exceeded or, without one, neither the\n"
-        "tolerances nor such noise explain the difference.\n\n"
+        "neighbours, a bias is not. What differs is held against the known other definitions. Exit code\n"
+        "2: --budget is exceeded or, without one, neither the tolerances nor such noise explain the\n"
+        "difference. docs/foreign.md describes AXES.json.\n\n"
         "A certificate (--certificate, a budget by norm, --on, --junit, --report) takes 100000 exact values\n"
         "anywhere between the nodes, uniform over the axes, searches for the worst point, states the\n"
         "confidence of p99 and of the largest error, and checks physics; FILE is a table or the factors\n"
@@ -70,6 +73,8 @@ const cli_verb cli_verb_validate = {
                 "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
                 "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate theirs.npy --axes theirs.json\n"
+                "lacquer validate fgd.exr --diagnose\n"
                 "lacquer validate hard-cases",
     .run = run,
 };
@@ -110,6 +115,12 @@ static bool take(validate_request *request, int id, const char *value) {
         return take_layout(request, value);
     case KIND:
         request->kind = value;
+        return true;
+    case AXES:
+        request->axes = value;
+        return true;
+    case DIAGNOSE:
+        request->diagnose = true;
         return true;
     case POINTS:
         request->points_given = true;
@@ -153,6 +164,8 @@ static bool suits_hard_cases(const validate_request *request) {
     if (settings->given[CLI_TOLERANCE - CLI_NDF]) given = "--tolerance";
     if (request->layout >= 0) given = "--layout";
     if (request->kind) given = "--kind";
+    if (request->axes) given = "--axes";
+    if (request->diagnose) given = "--diagnose";
     if (request->budget > 0.0) given = "--budget";
     if (request->points_given) given = "--points";
     if (request->walk || request->other) given = "--against";
@@ -167,6 +180,11 @@ static bool suits(const validate_request *request) {
     if (published && !request->kind)
         cli_message("--layout needs --kind: a published file does not say which table it holds");
     else if (!published && request->kind) cli_message("--kind needs --layout");
+    else if (request->axes && (published || request->other || request->walk || request->diagnose))
+        cli_message("--axes describes FILE alone: leave out --layout, --against and --diagnose");
+    else if (request->axes && given) cli_message("%s: %s says how FILE was made", given, request->axes);
+    else if (request->diagnose && (published || request->other || request->walk))
+        cli_message("--diagnose is for FILE alone; --layout and --against OTHER diagnose as they are");
     else if (published && request->walk)
         cli_message("a published table is not checked by walks; drop --layout or --against walk");
     else if (given && (!published || request->other))
@@ -240,7 +258,8 @@ static int run(int argc, char **argv) {
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
     if (job.request.certify.wanted) return certify(&job.request);
-    if (job.request.other || job.request.layout >= 0) return validate_against(&job.request);
+    if (job.request.other || job.request.layout >= 0 || job.request.axes || job.request.diagnose)
+        return validate_against(&job.request);
     lq_error error = {""};
     lq_status status = load(&job, &error);
     if (status == LQ_OK) {

@@ -24,6 +24,8 @@ typedef struct validate_request {
     cli_settings settings;
     bool points_given;
     certify_request certify;
+    const char *axes; /* a JSON text that says what FILE, of anybody's, is */
+    bool diagnose;    /* FILE of this program, all of it, by the same report */
 } validate_request;
 
 /* The lists, in the order they are reported. */

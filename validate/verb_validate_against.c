@@ -55,7 +55,12 @@ static const double rounding = 6e-8;
 static lq_status load(against_job *job, lq_error *error) {
     const validate_request *request = job->request;
     lq_status status;
-    if (!request->other) {
+    if (request->axes || request->diagnose) {
+        job->other_name = request->file;
+        if (request->diagnose) status = validate_load_file(request->file, &job->other, &job->origin, error);
+        else status = lq_table_read_described(&job->other, request->file, request->axes, error);
+        if (status == LQ_OK && request->axes) status = lq_origin_of(job->other, &job->origin, error);
+    } else if (!request->other) {
         job->other_name = request->file;
         status = read_published(&job->other, request->file, request, error);
         if (status == LQ_OK) status = assume_origin(job, error);
@@ -69,7 +74,8 @@ static lq_status load(against_job *job, lq_error *error) {
     if (status == LQ_OK) status = same_kind(job, error);
     if (status != LQ_OK) return status;
     job->origin.settings.threads = request->threads;
-    job->allowance = job->origin.settings.tolerance + stated_tolerance(job->other) + rounding;
+    job->allowance = job->origin.settings.tolerance + rounding;
+    if (request->other) job->allowance += stated_tolerance(job->other);
     return LQ_OK;
 }
 
@@ -212,6 +218,16 @@ const char *against_complaint(const against_job *job) {
     return explained ? NULL : "neither the stated tolerances nor independent noise explain the difference";
 }
 
+/* Something is wrong: is it another definition? */
+static lq_status diagnose(against_job *job, const lq_progress *progress, lq_error *error) {
+    bool agree = job->patterned;
+    for (int c = 0; c < job->other->channel_count; c++)
+        agree = agree && (job->pattern[c].verdict == LQ_AGREES || job->pattern[c].verdict == LQ_SPOTS);
+    if (agree || (!job->patterned && !against_complaint(job))) return LQ_OK;
+    return lq_variants_try(job->other, job->origin.kind, &job->origin.settings, progress, &job->variants,
+                           error);
+}
+
 static int report(const against_job *job) {
     if (!job->request->json) against_print_text(job);
     else if (!against_print_json(job))
@@ -229,6 +245,7 @@ int validate_against(const validate_request *request) {
         cli_progress bar;
         cli_progress_begin(&bar, job->origin.kind->id);
         status = measure(job, &bar.progress, &error);
+        if (status == LQ_OK) status = diagnose(job, &bar.progress, &error);
         cli_progress_end(&bar);
     } else if (status == LQ_CANCELLED) {
         status = LQ_BAD_INPUT; /* its line is printed */

@@ -3,6 +3,7 @@
 #define LACQUER_VALIDATE_VERB_VALIDATE_AGAINST_H
 
 #include "validate/pattern.h"
+#include "validate/variants.h"
 #include "validate/verb_validate.h"
 
 /* `other` is judged against `reference`: FILE itself where it has the same nodes, else what FILE says it is,
@@ -19,6 +20,7 @@ typedef struct against_job {
     lq_comparison result[LQ_MAX_CHANNELS];
     lq_pattern pattern[LQ_MAX_CHANNELS];
     lq_drawn worst_at[LQ_MAX_CHANNELS];
+    lq_variants variants; /* none where the two agree */
 } against_job;
 
 const char *against_complaint(const against_job *job);
