@@ -284,6 +284,7 @@ static lq_status attempt_ndfs(attempt *t, const lq_settings *stated, lq_error *e
         char what[64];
         if (strcmp(stated->ndf, other_ndfs[i]) == 0) continue;
         settings.ndf = other_ndfs[i];
+        settings.opened = NULL;
         snprintf(what, sizeof what, "the NDF %s", other_ndfs[i]);
         status = attempt_one(t, &settings, &changes[0], what, error);
     }

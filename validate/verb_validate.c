@@ -241,9 +241,10 @@ static int report(const validate_job *job) {
 /* What the options that both ways of validating share say. */
 static int certify(validate_request *request) {
     certify_request *c = &request->certify;
-    if (request->walk || request->other || request->layout >= 0)
+    if (request->walk || request->other || request->layout >= 0 || request->axes || request->diagnose)
         return cli_fail(
-            "a certificate is made against the solver; drop --against, --layout or the budget by norm");
+            "a certificate is made against the solver; drop --against, --layout, --axes and --diagnose, "
+            "or the budget by norm");
     c->path = request->file;
     c->points = request->points_given ? request->points : 0;
     c->seed = request->seed;
