@@ -259,3 +259,13 @@ void lq_output_abandon(lq_output *output) {
     free(output->path);
     free(output);
 }
+
+lq_status lq_output_save(const char *path, const void *bytes, size_t size, lq_error *error) {
+    lq_output *file;
+    lq_status status = lq_output_open(&file, path, error);
+    if (status != LQ_OK) return status;
+    status = lq_output_write(file, bytes, size, error);
+    if (status == LQ_OK) return lq_output_commit(file, error);
+    lq_output_abandon(file);
+    return status;
+}

@@ -27,6 +27,9 @@ lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, 
  * behind and the older file stands. */
 lq_status lq_output_commit(lq_output *output, lq_error *error);
 
+/* All of that for a file whose bytes are at hand. */
+lq_status lq_output_save(const char *path, const void *bytes, size_t size, lq_error *error);
+
 /* Forget the file and free `output` (NULL is fine): as if it had never been opened. */
 void lq_output_abandon(lq_output *output);
 

@@ -59,6 +59,36 @@ cases = tree.parse("loss.xml").getroot().findall("testsuite/testcase")
 assert [c.get("name") for c in cases if c.find("failure") is not None] == ["budget p99"]
 PY
 
+# the page: one file, every pair of axes, what each term buys; nothing is fetched
+"$LACQUER" precompute tir-pass --axis mu=0.05:1:17 --axis alpha=0.1:1:9 --axis eta=1.1:2.5:9 -o pass.exr >/dev/null
+"$LACQUER" pca pass.exr --separate eta:4 -o factors.exr >/dev/null
+run 0 validate factors.exr --table pass.exr --budget max=5e-2 --points 5000 --report page
+for part in integration interpolation factorisation half-float filter; do says "^  $part "; done
+python3 - <<'PY' || fail "the page is not what it should be"
+import html.parser
+text = open("page/index.html", encoding="utf-8").read()
+class Parser(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.open, self.maps, self.titles, self.cells = [], 0, [], 0
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        assert not {"src", "onclick"} & set(attributes) and tag not in ("script", "link", "img")
+        assert not attributes.get("href", "#").startswith("http")
+        self.cells += tag == "rect" and attributes.get("class", "").startswith("e")
+        if tag not in ("meta", "rect", "path", "polyline"): self.open.append(tag)
+    def handle_endtag(self, tag):
+        if tag not in ("rect", "path", "polyline"): assert self.open.pop() == tag, tag
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "title": self.titles.append(data)
+page = Parser()
+page.feed(text)
+assert not page.open
+for pair in ("mu and alpha", "mu and eta", "alpha and eta"): assert f"largest error over {pair}" in page.titles, page.titles
+assert "Errors of the points" in page.titles and "Terms, bytes and error" in page.titles
+assert page.cells > 400
+PY
+
 # a budget file: what the table does not say comes from the top
 cat >budget.json <<'JSON'
 {"max": 1e-6, "on": {"mu": [0.1, 1]}, "tables": {"tir-loss": {"max": 5e-2, "on": {"mu": [0.1, 1], "alpha": [0.2, 1]}}}}

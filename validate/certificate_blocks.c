@@ -123,11 +123,13 @@ lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const
     lq_job job;
     lq_status status = lq_job_make(&job, kind, settings, block->size, nodes, error);
     if (status != LQ_OK) return status;
-    if (block->size[evaluator->slice_axis] != 1)
-        return lq_fail(error, LQ_BAD_INPUT, "a block of more than one slice");
     void *state = NULL;
-    if (evaluator->prepare) status = evaluator->prepare(&job, &state, error);
+    if (block->size[evaluator->slice_axis] != 1)
+        status = lq_fail(error, LQ_BAD_INPUT, "a block of more than one slice");
+    if (status == LQ_OK) status = lq_job_prepare(&job, evaluator, 0, error);
+    if (status == LQ_OK && evaluator->prepare) status = evaluator->prepare(&job, &state, error);
     if (status == LQ_OK) status = evaluator->slice(&job, state, 0, channels, estimate, error);
     if (evaluator->release) evaluator->release(state);
+    lq_job_free(&job);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }

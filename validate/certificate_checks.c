@@ -101,7 +101,10 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
     lq_check_budget(certified);
     lq_check_physics(certified);
     status = lq_check_bands(certified, error);
-    return status == LQ_OK ? lq_check_stored(certified, error) : status;
+    if (status == LQ_OK) status = lq_check_texels(certified, error);
+    if (status == LQ_OK) status = lq_check_stored(certified, error);
+    if (status == LQ_OK) lq_check_sampling(certified);
+    return status;
 }
 
 void lq_certified_free(lq_certified *certified) {

@@ -16,11 +16,19 @@ typedef struct lq_check {
 
 enum { LQ_CHECKS_MAX = 48 };
 
+/* The stored entries against the solver at a tenth of their tolerance; the entry that is furthest out counts
+ * for `max`. count 0: there is no stored table. */
+typedef struct lq_integration {
+    size_t count;
+    double max, rms;
+} lq_integration;
+
 /* One table with its certificate and everything judged. */
 typedef struct lq_certified {
     lq_subject subject;
     lq_budget budget;
     lq_certificate certificate;
+    lq_integration integration;
     int check_count;
     lq_check checks[LQ_CHECKS_MAX];
 } lq_certified;
@@ -56,6 +64,8 @@ void lq_certified_free(lq_certified *certified);
 void lq_check_budget(lq_certified *certified);
 void lq_check_physics(lq_certified *certified);
 lq_status lq_check_stored(lq_certified *certified, lq_error *error);
+void lq_check_sampling(lq_certified *certified);
+lq_status lq_check_texels(lq_certified *certified, lq_error *error);
 lq_status lq_check_bands(lq_certified *certified, lq_error *error);
 
 #endif

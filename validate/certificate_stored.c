@@ -8,6 +8,7 @@
 #include "validate/certificate_checks.h"
 
 #include "tables/status.h"
+#include "validate/certificate_suspects.h"
 #include "validate/stream.h"
 
 #include <math.h>
@@ -15,95 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCKS = 24, ALONG = 8, LISTED = 16, SUSPECTS = 2 * LISTED, STREAM_NODES = 0x6e6f6465 };
+enum { BLOCKS = 24, ALONG = 8, STREAM_NODES = 0x6e6f6465 };
 
 /* Half a unit in the last place of a stored value in [0.5, 1]. */
 static const double rounding = 3e-8;
-
-typedef struct entry {
-    size_t index;
-    int channel;
-    double score;
-} entry;
-
-/* ------------------------------------------------------------------------------------- suspects */
-
-/* |v - cubic through the four nearest others| along an axis, from the values `v`, `stride` apart, at place i
- * of n >= 5: at the ends the cubic is an extrapolation. */
-static double departure(const float *v, size_t i, size_t n, size_t stride) {
-    const double at = (double)v[i * stride];
-    if (i >= 2 && i + 2 < n)
-        return fabs(at - (4.0 * ((double)v[(i - 1) * stride] + (double)v[(i + 1) * stride]) -
-                          (double)v[(i - 2) * stride] - (double)v[(i + 2) * stride]) /
-                             6.0);
-    const bool low = i < 2;
-    const size_t end = low ? 0 : n - 1;
-    const double w[2][5] = {{0, 4, -6, 4, -1}, {0.25, 0, 1.5, -1.0, 0.25}};
-    const size_t place = low ? i : end - i;
-    double sum = 0.0;
-    for (size_t k = 0; k < 5; k++) sum += w[place][k] * (double)v[(low ? k : end - k) * stride];
-    return fabs(at - sum);
-}
-
-/* Along one axis, at an entry. */
-static double departure_at(const lq_table *table, int channel, size_t index, int axis) {
-    size_t stride = 1;
-    for (int a = 0; a < axis; a++) stride *= table->axes[a].size;
-    const size_t n = table->axes[axis].size, i = index / stride % n;
-    return departure(table->channels[channel] + (index - i * stride), i, n, stride);
-}
-
-/* The least departure over the axes of five nodes or more; 0 where there is none. */
-static double sticks_out(const lq_table *table, int channel, size_t index) {
-    double least = INFINITY;
-    for (int a = 0; a < table->axis_count; a++)
-        if (table->axes[a].size >= 5) least = fmin(least, departure_at(table, channel, index, a));
-    return isfinite(least) ? least : 0.0;
-}
-
-/* Largest departure along `axis` on the lines beside an entry, which do not hold it. */
-static double beside(const lq_table *table, int channel, size_t index, int axis) {
-    double most = 0.0;
-    size_t stride = 1;
-    for (int a = 0; a < table->axis_count; stride *= table->axes[a++].size) {
-        const size_t n = table->axes[a].size, i = index / stride % n;
-        if (a == axis) continue;
-        if (i > 0) most = fmax(most, departure_at(table, channel, index - stride, axis));
-        if (i + 1 < n) most = fmax(most, departure_at(table, channel, index + stride, axis));
-    }
-    return most;
-}
-
-/* The same relative to what is beside, along the axis that tells most: where values are rough along one, they
- * are smooth along another. `floor` is a departure that means nothing. */
-static double stands_alone(const lq_table *table, int channel, size_t index, double floor) {
-    double most = 0.0;
-    for (int a = 0; a < table->axis_count; a++) {
-        const double out = table->axes[a].size >= 5 ? departure_at(table, channel, index, a) : 0.0;
-        if (out > most * floor) most = fmax(most, out / (floor + beside(table, channel, index, a)));
-    }
-    return most;
-}
-
-/* Insert where it belongs among the `count` largest. */
-static void keep(entry *list, size_t count, entry e) {
-    if (!(e.score > list[count - 1].score)) return;
-    size_t at = count - 1;
-    for (; at > 0 && list[at - 1].score < e.score; at--) list[at] = list[at - 1];
-    list[at] = e;
-}
-
-static void find_suspects(const lq_table *table, double tolerance, entry *list) {
-    const size_t entries = lq_table_entries(table);
-    memset(list, 0, SUSPECTS * sizeof *list);
-    for (int c = 0; c < table->channel_count; c++)
-        for (size_t i = 0; i < entries; i++) {
-            const double out = sticks_out(table, c, i);
-            if (!(out > tolerance)) continue;
-            keep(list, LISTED, (entry){i, c, out});
-            keep(list + LISTED, LISTED, (entry){i, c, stands_alone(table, c, i, tolerance)});
-        }
-}
 
 /* ---------------------------------------------------------------------------------- comparison */
 
@@ -171,7 +87,7 @@ static lq_status compare_block(stored *s, const lq_block_plan *plan, size_t inde
     return status;
 }
 
-static lq_status compare_suspect(stored *s, const entry *e, lq_error *error) {
+static lq_status compare_suspect(stored *s, const lq_suspect *e, lq_error *error) {
     double at[LQ_MAX_AXES] = {0.0}, exact[LQ_MAX_CHANNELS], estimate;
     size_t left = e->index;
     for (int a = 0; a < s->kind->axis_count; a++) {
@@ -196,20 +112,20 @@ static void merge(stored *s, const stored *part) {
     s->rms += part->rms;
 }
 
-static lq_status compare_all(stored *s, const lq_block_plan *plan, const entry *suspects, int threads,
+static lq_status compare_all(stored *s, const lq_block_plan *plan, const lq_suspect *suspects, int threads,
                              lq_error *error) {
-    lq_status status[BLOCKS + SUSPECTS];
-    lq_error causes[BLOCKS + SUSPECTS];
-    stored parts[BLOCKS + SUSPECTS];
+    lq_status status[BLOCKS + LQ_SUSPECTS];
+    lq_error causes[BLOCKS + LQ_SUSPECTS];
+    stored parts[BLOCKS + LQ_SUSPECTS];
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t i = 0; i < BLOCKS + SUSPECTS; i++) {
+    for (size_t i = 0; i < BLOCKS + LQ_SUSPECTS; i++) {
         parts[i] = *s;
         status[i] = LQ_OK;
         if (i < BLOCKS) status[i] = compare_block(&parts[i], plan, i, &causes[i]);
         else if (suspects[i - BLOCKS].score > 0.0)
             status[i] = compare_suspect(&parts[i], &suspects[i - BLOCKS], &causes[i]);
     }
-    for (size_t i = 0; i < BLOCKS + SUSPECTS; i++) {
+    for (size_t i = 0; i < BLOCKS + LQ_SUSPECTS; i++) {
         if (status[i] != LQ_OK) {
             if (error) *error = causes[i];
             return status[i];
@@ -227,17 +143,18 @@ lq_status lq_check_stored(lq_certified *certified, lq_error *error) {
     stored s = {.table = subject->table, .kind = subject->origin.kind, .allowance = tolerance + rounding};
     s.settings = subject->origin.settings;
     s.settings.tolerance = fmax(0.1 * tolerance, s.kind->finest_tolerance);
-    entry suspects[SUSPECTS];
-    find_suspects(s.table, tolerance, suspects);
+    lq_suspect suspects[LQ_SUSPECTS];
+    lq_suspects_find(s.table, tolerance, suspects);
     const int threads = c->request.threads > 0 ? c->request.threads : omp_get_num_procs();
     const lq_status status = compare_all(&s, &c->plan, suspects, threads, error);
     if (status != LQ_OK) return status;
+    certified->integration = (lq_integration){s.count, s.most, sqrt(s.rms / (double)s.count)};
     char at[160];
     lq_point_text(s.kind, s.at, at, sizeof at);
     lq_check_add(
         certified, "stored entries", s.most, s.most - s.worst,
         "%zu entries against the solver, rms %.2e, the %d that stick out most included; limit: stated "
         "tolerance + estimate; at %s",
-        s.count, sqrt(s.rms / (double)s.count), SUSPECTS, at);
+        s.count, sqrt(s.rms / (double)s.count), LQ_SUSPECTS, at);
     return LQ_OK;
 }

@@ -271,28 +271,23 @@ static lq_status check(const lq_plot *plot, lq_error *error) {
     return LQ_OK;
 }
 
-static lq_status save(const char *path, const char *text, size_t size, lq_error *error) {
-    lq_output *file;
-    lq_status status = lq_output_open(&file, path, error);
+lq_status lq_plot_draw(const lq_plot *plot, FILE *out, lq_error *error) {
+    scale x, y;
+    const lq_status status = check(plot, error);
     if (status != LQ_OK) return status;
-    status = lq_output_write(file, text, size, error);
-    if (status == LQ_OK) return lq_output_commit(file, error);
-    lq_output_abandon(file);
-    return status;
+    if (!make_scales(plot, &x, &y)) return lq_fail(error, LQ_BAD_INPUT, "plot: no point that can be drawn");
+    draw(out, plot, &x, &y);
+    return LQ_OK;
 }
 
 lq_status lq_plot_write(const lq_plot *plot, const char *path, lq_error *error) {
-    scale x, y;
-    lq_status status = check(plot, error);
-    if (status != LQ_OK) return status;
-    if (!make_scales(plot, &x, &y)) return lq_fail(error, LQ_BAD_INPUT, "plot: no point that can be drawn");
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for a plot");
-    draw(out, plot, &x, &y);
+    lq_status status = lq_plot_draw(plot, out, error);
     if (fclose(out) != 0) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a plot");
-    else status = save(path, text, size, error);
+    if (status == LQ_OK) status = lq_output_save(path, text, size, error);
     free(text);
     return status;
 }

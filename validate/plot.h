@@ -4,6 +4,8 @@
 
 #include "lacquer.h"
 
+#include <stdio.h>
+
 typedef struct lq_plot_axis {
     const char *label;
     bool logarithmic;
@@ -37,7 +39,9 @@ typedef struct lq_plot {
 /* "10⁻⁵" for -5, in at most 24 bytes; for labels. */
 void lq_plot_power(char *text, int power);
 
-/* LQ_BAD_INPUT where there is nothing to draw. The file appears whole or not at all. */
+/* LQ_BAD_INPUT where there is nothing to draw. The first writes the <svg> element, for a page. The file
+ * appears whole or not at all. */
+lq_status lq_plot_draw(const lq_plot *plot, FILE *out, lq_error *error);
 lq_status lq_plot_write(const lq_plot *plot, const char *path, lq_error *error);
 
 #endif

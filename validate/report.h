@@ -8,5 +8,7 @@
 lq_status lq_report_json(const lq_certified *list, size_t count, char **text, lq_error *error);
 /* One test case a judgement; files appear whole or not at all. */
 lq_status lq_report_junit(const lq_certified *list, size_t count, const char *path, lq_error *error);
+/* folder/index.html, a page that needs no other file; the folder is made where it does not exist. */
+lq_status lq_report_html(const lq_certified *list, size_t count, const char *folder, lq_error *error);
 
 #endif

@@ -79,6 +79,11 @@ static json_t *certified_json(const lq_certified *certified) {
                              number(c->estimate), "total", figures_json(c, &c->total), "stages",
                              stages_json(c), "search", found_json(c), "unseen_share", number(c->unseen),
                              "checks", checks_json(certified), "passed", !failed);
+    if (root && certified->integration.count > 0)
+        json_object_set_new(root, "integration",
+                            json_pack("{s:I, s:o, s:o}", "entries", (json_int_t)certified->integration.count,
+                                      "max", number(certified->integration.max), "rms",
+                                      number(certified->integration.rms)));
     if (root) json_object_set_new(root, "complaint", failed ? json_string(failed->name) : json_null());
     return root;
 }

@@ -95,6 +95,7 @@ static int report(const certify_request *request, const lq_certified *list, size
         free(text);
     }
     if (status == LQ_OK && request->junit) status = lq_report_junit(list, count, request->junit, &error);
+    if (status == LQ_OK && request->report) status = lq_report_html(list, count, request->report, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     return failed ? CLI_EXCEEDED : CLI_DONE;
 }

@@ -27,7 +27,8 @@ static void print_figures(const char *name, const lq_figures *f) {
     else printf("  not settled\n");
 }
 
-static void print_errors(const lq_certificate *c) {
+static void print_errors(const lq_certified *certified) {
+    const lq_certificate *c = &certified->certificate;
     printf("\n  %-18s %9s %9s %9s %9s  %s\n", "decoded - exact", "max", "p99", "rms", "bias", "p99 (95 %)");
     for (int s = 0; s < c->request.stage_count; s++)
         for (int k = 0; k < c->request.kind->channel_count; k++) {
@@ -38,6 +39,9 @@ static void print_errors(const lq_certificate *c) {
         }
     printf("\n  %-18s %9s %9s %9s %9s\n", "part of the error", "max", "p99", "rms", "bias");
     printf("  %-18s %9.1e (largest estimate of the exact values)\n", "solver", c->estimate);
+    if (certified->integration.count > 0)
+        printf("  %-18s %9.2e %9s %9.2e           (%zu stored entries)\n", "integration",
+               certified->integration.max, "", certified->integration.rms, certified->integration.count);
     for (int s = 0; s < c->request.stage_count; s++) {
         const lq_figures *f = &c->part[s][0];
         printf("  %-18s %9.2e %9.2e %9.2e %+9.1e\n", c->request.stages[s].part, f->max, f->p99, f->rms,
@@ -72,7 +76,7 @@ static void print_checks(const lq_certified *certified) {
 
 void certify_print_text(const lq_certified *certified) {
     print_head(certified);
-    print_errors(&certified->certificate);
+    print_errors(certified);
     print_confidence(&certified->certificate);
     print_checks(certified);
 }
