@@ -18,8 +18,17 @@ typedef struct resolution {
     int nodes, depths, outer, inner;
 } resolution;
 
-static const resolution levels[LQ_DIELECTRIC_LEVELS] = {{12, 12, 8, 8},   {16, 16, 10, 14}, {24, 20, 12, 18},
+static const resolution levels[LQ_DIELECTRIC_LEVELS] = {{12, 16, 8, 8},   {20, 20, 8, 12},  {24, 20, 12, 18},
                                                         {32, 24, 16, 24}, {48, 32, 24, 32}, {64, 40, 32, 40}};
+
+/* Where rewards of the light that leaves after its first hit are read, outside the iteration: tau^(1/mu) has
+ * an essential singularity at grazing, which costs nodes that plain energy can do without. */
+enum { LEAVING = 48, LEAVING_ENERGY = 16 };
+
+typedef struct leaving {
+    lq_node_axis axis;
+    double lambda[LEAVING];
+} leaving;
 
 /* One level of one roughness. Rising and falling directions of both sides use the same nodes, so that light
  * which crosses undeviated is not interpolated at all. */
@@ -30,13 +39,8 @@ struct lq_rough_level {
     lq_facet_rule rule;
     double *travel_down, *travel_up; /* [(i * depths + from) * depths + at] */
     double *survival;                /* [depth * nodes + j]: u^Lambda */
-    /* Where rewards are read: tau^(1/mu) has an essential singularity at grazing, which costs nodes, but only
-     * in what leaves after the first hit, outside the iteration. */
-    lq_node_axis fine;
-    double fine_lambda[LQ_NODES_MAX];
+    leaving leaving[2];              /* for energy alone, and for any reward */
 };
-
-enum { FINE = 48 };
 
 /* One side: the relative index of the other, where its reflectance kinks, and its facet operators: row i of a
  * falling (rising) ray over the 4 n directions it may be sent to: own side rising, own side falling, other
@@ -67,7 +71,7 @@ static void interface_free(interface *f) {
 static void level_free(lq_rough_level *r) {
     if (!r) return;
     lq_node_axis_free(&r->axis);
-    lq_node_axis_free(&r->fine);
+    for (int i = 0; i < 2; i++) lq_node_axis_free(&r->leaving[i].axis);
     free(r->travel_down);
     free(r->travel_up);
     free(r->survival);
@@ -85,6 +89,12 @@ static void fill_travel(lq_rough_level *r) {
         }
 }
 
+static bool leaving_make(leaving *l, const lq_ndf *ndf, double alpha, int count) {
+    if (!lq_node_axis_make(&l->axis, alpha, LQ_RISING, count, 0.0)) return false;
+    for (int i = 0; i < count; i++) l->lambda[i] = lq_lambda(ndf, alpha, l->axis.mu[i]);
+    return true;
+}
+
 static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolution *l, bool linear) {
     const size_t n = (size_t)l->nodes, d = (size_t)l->depths;
     lq_rough_level *r = calloc(1, sizeof *r);
@@ -96,13 +106,13 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolut
     r->survival = lq_zeros(n * d);
     const bool axis = linear ? lq_node_axis_make_linear(&r->axis, alpha, LQ_RISING, l->nodes)
                              : lq_node_axis_make(&r->axis, alpha, LQ_RISING, l->nodes, 0.0);
-    const bool fine = lq_node_axis_make(&r->fine, alpha, LQ_RISING, FINE, 0.0);
-    if (!axis || !fine || !r->travel_down || !r->travel_up || !r->survival) {
+    const bool leaves = leaving_make(&r->leaving[0], ndf, alpha, LEAVING_ENERGY) &&
+                        leaving_make(&r->leaving[1], ndf, alpha, LEAVING);
+    if (!axis || !leaves || !r->travel_down || !r->travel_up || !r->survival) {
         level_free(r);
         return NULL;
     }
     for (int i = 0; i < l->nodes; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
-    for (int i = 0; i < FINE; i++) r->fine_lambda[i] = lq_lambda(ndf, alpha, r->fine.mu[i]);
     fill_travel(r);
     return r;
 }
@@ -121,6 +131,11 @@ void lq_rough_free(lq_rough *rough) {
  * overshoots ever so slightly would be raised to the power of all these crossings. */
 static bool nearly_matched(double alpha, double eta) {
     return sqrt(2.0 * fabs(eta - 1.0)) < 0.04 * alpha;
+}
+
+double lq_dielectric_regular_from(const lq_rough *rough) {
+    return lq_dielectric_is_closed(rough, 2.0) ? INFINITY
+                                               : 1.0 + fmax(1e-4, 0.0009 * rough->alpha * rough->alpha);
 }
 
 static const lq_rough_level *level_of(lq_rough *rough, double eta, int l) {
@@ -144,9 +159,9 @@ typedef struct scatter {
      * each facet. */
     const lq_ndf *ndf;
     double alpha, mu, area;
-    const lq_node_axis *fine;
-    double *escaping; /* [FINE], or NULL */
-    double *through;  /* [FINE]: likewise, all that is refracted away from the surface */
+    const lq_node_axis *leaving;
+    double *escaping; /* on the leaving nodes, or NULL */
+    double *through;  /* likewise, all that is refracted away from the surface */
 } scatter;
 
 static void add_images(scatter *s, const lq_fan *fan, double factor, double *up, double *down,
@@ -167,7 +182,7 @@ static void add_escaping(scatter *s, const lq_fan *fan, double factor) {
         const double lit = s->area * fan->mirror[i], sum = lit + area[i] * s->mu;
         weight[i] = sum > 0.0 ? factor * fan->weight[i] * lit / sum : 0.0;
     }
-    lq_node_axis_moments(s->fine, s->kernels, rising, fan->mirror, weight, s->escaping);
+    lq_node_axis_moments(s->leaving, s->kernels, rising, fan->mirror, weight, s->escaping);
 }
 
 static void add_reflection(void *user, const lq_fan *fan) {
@@ -183,15 +198,16 @@ static void add_refraction(void *user, const lq_fan *fan) {
     if (s->through) {
         double weight[LQ_FAN_MAX];
         for (int i = 0; i < fan->up; i++) weight[i] = (1.0 - f) * fan->weight[i];
-        lq_node_axis_moments(s->fine, s->kernels, (size_t)fan->up, fan->mirror, weight, s->through);
+        lq_node_axis_moments(s->leaving, s->kernels, (size_t)fan->up, fan->mirror, weight, s->through);
     }
     add_images(s, fan, 1.0 - f, s->moments + 2 * s->nodes, s->moments + 3 * s->nodes, &s->refracted);
 }
 
-/* Light that leaves a ray from outside, on the fine nodes: reflected and not masked, and refracted, masked or
- * not. */
+/* Light that leaves a ray from outside, on the leaving nodes: reflected and not masked, and refracted, masked
+ * or not. */
 typedef struct direct {
-    double escaping[FINE], through[FINE];
+    const leaving *at;
+    double escaping[LEAVING], through[LEAVING];
 } direct;
 
 /* The row of direction v_z on side `s`: weights on the nodes of both sides that add up to 1, and the first
@@ -202,7 +218,7 @@ static void facet_row(const interface *f, int s, double v_z, double *row, direct
     const lq_facet_rule *rule = &f->level->rule;
     const int n = f->nodes;
     double moments[4 * LQ_NODES_MAX] = {0.0};
-    direct at_once = {{0.0}, {0.0}};
+    direct at_once = {NULL, {0.0}, {0.0}};
     const double sine = lq_sine(fabs(v_z));
     scatter k = {.kernels = lq_solver_kernels_get(), .eta = own->eta, .axis = axis};
     k.moments = moments;
@@ -212,7 +228,7 @@ static void facet_row(const interface *f, int s, double v_z, double *row, direct
         k.alpha = f->alpha;
         k.mu = v_z;
         k.area = lq_area_above(f->ndf, f->alpha, v_z, sine);
-        k.fine = &f->level->fine;
+        k.leaving = &first->at->axis;
         k.escaping = at_once.escaping;
         k.through = at_once.through;
     }
@@ -220,14 +236,14 @@ static void facet_row(const interface *f, int s, double v_z, double *row, direct
     lq_facets_visit_refracted(f->ndf, f->alpha, own->eta, v_z, sine, rule, &own->kinks, add_refraction, &k);
     const double scale = lq_inverse_area(k.reflected + k.refracted);
     for (int m = 0; m < 4 * n; m++) moments[m] *= scale;
-    for (int m = 0; m < FINE; m++) {
+    for (int m = 0; m < LEAVING; m++) {
         at_once.escaping[m] *= scale;
         at_once.through[m] *= scale;
     }
     for (int part = 0; part < 4; part++) lq_node_axis_project(axis, moments + part * n, row + part * n);
     if (first) {
-        lq_node_axis_project(&f->level->fine, at_once.escaping, first->escaping);
-        lq_node_axis_project(&f->level->fine, at_once.through, first->through);
+        lq_node_axis_project(k.leaving, at_once.escaping, first->escaping);
+        lq_node_axis_project(k.leaving, at_once.through, first->through);
     }
 }
 
@@ -259,15 +275,15 @@ static bool interface_make(interface *f, const lq_rough *rough, double eta, cons
 /* One batch of rewards, a lane each. */
 typedef struct solution {
     lq_v8 *reward;    /* [side * nodes + j], of the rising nodes */
-    lq_v8 *fine;      /* [side * FINE + j], of the fine ones */
+    lq_v8 *leaving;   /* [side * LEAVING + j], of the leaving ones */
     lq_v8 *value[2];  /* E: [depth * 2 nodes + (rising, falling)] */
     lq_v8 *before[2]; /* C: likewise */
 } solution;
 
 static bool solution_make(solution *x, const interface *f) {
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
-    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes + 2 * FINE) * LQ_LANES);
-    *x = (solution){.reward = all + 4 * size, .fine = all + 4 * size + 2 * (size_t)f->nodes};
+    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes + 2 * LEAVING) * LQ_LANES);
+    *x = (solution){.reward = all + 4 * size, .leaving = all + 4 * size + 2 * (size_t)f->nodes};
     for (int s = 0; s < 2; s++) {
         x->value[s] = all + (size_t)s * size;
         x->before[s] = all + (size_t)(2 + s) * size;
@@ -296,14 +312,18 @@ static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
 /* Passes count hits: a few dozen where the media differ, thousands where they nearly match. */
 enum { PASSES_MAX = 20000 };
 
+/* What the passes that are not made may add up to. */
+static const double SETTLED = 1e-9;
+
 /* False where the iteration grows instead: rays that graze a fine level meet hundreds of facets, and its
  * interpolation can overshoot by enough to matter then. A coarser level holds. */
 static bool solve(const interface *f, solution *x) {
     const lq_solver_kernels *kernels = lq_solver_kernels_get();
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
     for (int s = 0; s < 2; s++) memset(x->before[s], 0, size * sizeof(lq_v8));
-    double change = 1.0;
-    for (int pass = 0; pass < PASSES_MAX && change > 1e-13 && change < 10.0; pass++) {
+    double change = 1.0, left = 1.0;
+    for (int pass = 0; pass < PASSES_MAX && left > SETTLED && change < 10.0; pass++) {
+        const double before = change;
         change = 0.0;
         for (int s = 0; s < 2; s++) {
             const lq_two_sided k = kernel_of(f, x, s);
@@ -313,10 +333,12 @@ static bool solve(const interface *f, solution *x) {
             const lq_two_sided k = kernel_of(f, x, s);
             kernels->meet(&k);
         }
+        /* The changes fall like a geometric series: what all the later ones would add. */
+        left = change < before ? change * fmax(change / (before - change), 1.0) : 1.0;
     }
     for (size_t q = 0; q < size; q++)
         if (!(fabs(x->value[0][q][0]) < 10.0 && fabs(x->value[1][q][0]) < 10.0)) return false; /* NaN too */
-    return change <= 1e-7;
+    return left <= 1e-6;
 }
 
 /* -------------------------------------------------------------------------------- readout */
@@ -334,7 +356,8 @@ static double refracted_escape(double lambda_i, double lambda_o) {
 typedef struct reader {
     double arrival[LQ_DEPTHS_MAX]; /* where a ray from outside meets its first facet */
     double row[4 * LQ_NODES_MAX];
-    double escaping[2 * FINE];         /* leaves at once, on the fine nodes: own side, then other */
+    const leaving *leaving;
+    double escaping[2 * LEAVING];      /* leaves at once, on the leaving nodes: own side, then other */
     double survives[2 * LQ_NODES_MAX]; /* the same per unit of light, as the depths see it */
     double staying[2 * LQ_NODES_MAX];  /* weight of E minus the reward of what survives */
 } reader;
@@ -364,27 +387,29 @@ static double staying_scale(double stays, double by_nodes) {
 
 static void settle_sum(reader *r, int n) {
     double sum = 0.0, direct_light = 0.0;
-    for (int j = 0; j < 2 * FINE; j++) direct_light += r->escaping[j];
+    for (int j = 0; j < 2 * LEAVING; j++) direct_light += r->escaping[j];
     for (int j = 0; j < 2 * n; j++) sum += r->staying[j] * (1.0 - r->survives[j]);
     for (int j = 0; j < n; j++) sum += r->row[n + j] + r->row[3 * n + j];
     const double scale = direct_light > 1e-6 ? (1.0 - sum) / direct_light : 1.0;
-    for (int j = 0; j < 2 * FINE; j++) r->escaping[j] *= scale;
+    for (int j = 0; j < 2 * LEAVING; j++) r->escaping[j] *= scale;
 }
 
-static void reader_make(reader *r, const interface *f, int s, double mu) {
+static void reader_make(reader *r, const interface *f, const leaving *at, int s, double mu) {
     const int n = f->nodes;
     /* At mu = 0 itself the limit is approached only like mu^Lambda_o, slower than any table resolves. */
     const double cosine = fmax(mu, LQ_GRAZING);
     const double lambda_i = lq_lambda(f->ndf, f->alpha, cosine);
     lq_travel_down(&f->level->depths, lambda_i, 1.0, r->arrival);
-    direct first;
+    direct first = {at, {0.0}, {0.0}};
     facet_row(f, s, cosine, r->row, &first);
     double stays[2] = {0.0, 0.0}, by_nodes[2] = {0.0, 0.0}; /* rising, but not out: by facets, and by nodes */
-    for (int j = 0; j < FINE; j++) {
+    r->leaving = at;
+    memset(r->escaping, 0, sizeof r->escaping);
+    for (int j = 0; j < at->axis.count; j++) {
         r->escaping[j] = first.escaping[j];
-        r->escaping[FINE + j] = first.through[j] * refracted_escape(lambda_i, f->level->fine_lambda[j]);
+        r->escaping[LEAVING + j] = first.through[j] * refracted_escape(lambda_i, at->lambda[j]);
         stays[0] -= r->escaping[j];
-        stays[1] -= r->escaping[FINE + j];
+        stays[1] -= r->escaping[LEAVING + j];
     }
     for (int j = 0; j < 2 * n; j++) {
         const int way = j / n;
@@ -404,8 +429,9 @@ static void reader_make(reader *r, const interface *f, int s, double mu) {
 /* What leaves at once is worth: all there is in single scattering. */
 static void read_direct(int s, const reader *r, const solution *x, lq_v8 *value) {
     lq_v8 sum = {0.0};
-    for (int j = 0; j < FINE; j++)
-        sum += r->escaping[j] * x->fine[s * FINE + j] + r->escaping[FINE + j] * x->fine[(1 - s) * FINE + j];
+    for (int j = 0; j < r->leaving->axis.count; j++)
+        sum += r->escaping[j] * x->leaving[s * LEAVING + j] +
+               r->escaping[LEAVING + j] * x->leaving[(1 - s) * LEAVING + j];
     *value = sum;
 }
 
@@ -432,15 +458,28 @@ static double reward_of(double tau, double mu) {
     return tau == 1.0 ? 1.0 : tau > 0.0 ? exp(log(tau) / mu) : 0.0;
 }
 
-static void load_rewards(const interface *f, const lq_question *q, size_t first, size_t count, solution *x) {
+/* Light is not lost: what does not leave one side leaves the other. Energy is always counted on the side that
+ * the light comes from, so that both sides add up to 1. */
+static bool is_complement(const lq_question *q, double tau) {
+    return tau == 1.0 && q->scattering == LQ_MULTIPLE && q->reward_side != q->side;
+}
+
+static bool counts_energy(const lq_question *q) {
+    for (size_t t = 0; t < q->tau_count; t++)
+        if (q->tau[t] != 1.0) return false;
+    return true;
+}
+
+static void load_rewards(const interface *f, const lq_question *q, const leaving *at, size_t first,
+                         size_t count, solution *x) {
     const int n = f->nodes;
-    memset(x->reward, 0, (2 * (size_t)n + 2 * FINE) * sizeof(lq_v8));
+    memset(x->reward, 0, (2 * (size_t)n + 2 * LEAVING) * sizeof(lq_v8));
     for (size_t l = 0; l < count; l++) {
         const double tau = q->tau[first + l];
-        for (int j = 0; j < n; j++)
-            x->reward[q->reward_side * n + j][l] = reward_of(tau, f->level->axis.mu[j]);
-        for (int j = 0; j < FINE; j++)
-            x->fine[q->reward_side * FINE + j][l] = reward_of(tau, f->level->fine.mu[j]);
+        const int payer = is_complement(q, tau) ? q->side : q->reward_side;
+        for (int j = 0; j < n; j++) x->reward[payer * n + j][l] = reward_of(tau, f->level->axis.mu[j]);
+        for (int j = 0; j < at->axis.count; j++)
+            x->leaving[payer * LEAVING + j][l] = reward_of(tau, at->axis.mu[j]);
     }
 }
 
@@ -451,12 +490,16 @@ static void answer_batch(const interface *f, const lq_question *q, const reader 
         lq_v8 value;
         if (q->scattering == LQ_SINGLE) read_direct(q->side, r, x, &value);
         else read_multiple(f, q->side, r, x, &value);
-        for (size_t l = 0; l < count; l++)
-            q->answer[(first + l) * q->mu_count + m] = fmin(fmax(value[l], 0.0), 1.0);
+        for (size_t l = 0; l < count; l++) {
+            const double energy = fmin(fmax(value[l], 0.0), 1.0);
+            q->answer[(first + l) * q->mu_count + m] =
+                is_complement(q, q->tau[first + l]) ? 1.0 - energy : energy;
+        }
     }
 }
 
 static lq_status answer(const interface *f, const lq_question *q) {
+    const leaving *at = &f->level->leaving[!counts_energy(q)];
     reader *readers = malloc(q->mu_count * sizeof *readers);
     solution x;
     lq_status status = LQ_OK;
@@ -464,10 +507,10 @@ static lq_status answer(const interface *f, const lq_question *q) {
         free(readers);
         return LQ_NO_MEMORY;
     }
-    for (size_t m = 0; m < q->mu_count; m++) reader_make(&readers[m], f, q->side, q->mu[m]);
+    for (size_t m = 0; m < q->mu_count; m++) reader_make(&readers[m], f, at, q->side, q->mu[m]);
     for (size_t first = 0; first < q->tau_count; first += LQ_LANES) {
         const size_t left = q->tau_count - first, count = left < LQ_LANES ? left : LQ_LANES;
-        load_rewards(f, q, first, count, &x);
+        load_rewards(f, q, at, first, count, &x);
         if (q->scattering == LQ_MULTIPLE && !solve(f, &x)) status = LQ_NOT_CONVERGED;
         answer_batch(f, q, readers, first, count, &x);
     }

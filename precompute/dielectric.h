@@ -62,6 +62,9 @@ void lq_rough_free(lq_rough *rough);
 /* Is the answer known in closed form: smooth, or matched media? */
 bool lq_dielectric_is_closed(const lq_rough *rough, double eta);
 
+/* From this index on all of them are solved alike: neither in closed form nor as nearly matched media. */
+double lq_dielectric_regular_from(const lq_rough *rough);
+
 /* Answer `count` questions about one interface, eta = n_1 / n_0 > 0, at one level of resolution.
  * LQ_NOT_CONVERGED: this level is too fine for so grazing rays, and its answers are void; coarser ones hold.
  */

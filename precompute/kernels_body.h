@@ -60,9 +60,17 @@ static inline void moments_of(int groups, const double *x, const double *w, int 
     }
 }
 
+typedef long long lq_i8 __attribute__((vector_size(64)));
+
+/* Raise each lane of `most` to |a - b|, unless that is not a number. */
+static inline void raise_change(lq_v8 *most, const lq_v8 *a, const lq_v8 *b) {
+    const lq_v8 change = (lq_v8)((lq_i8)(*a - *b) & INT64_MAX);
+    const lq_i8 greater = change > *most;
+    *most = (lq_v8)(((lq_i8)change & greater) | ((lq_i8)*most & ~greater));
+}
+
 /* The sums of the lanes of eight vectors: three rounds of adding halves. */
 static inline void add_lanes(const lq_v8 *v, double *restrict out) {
-    typedef long long lq_i8 __attribute__((vector_size(64)));
     const lq_i8 low1 = {0, 8, 2, 10, 4, 12, 6, 14}, high1 = {1, 9, 3, 11, 5, 13, 7, 15};
     const lq_i8 low2 = {0, 1, 8, 9, 4, 5, 12, 13}, high2 = {2, 3, 10, 11, 6, 7, 14, 15};
     const lq_i8 low4 = {0, 1, 2, 3, 8, 9, 10, 11}, high4 = {4, 5, 6, 7, 12, 13, 14, 15};
@@ -245,17 +253,27 @@ static void read_energies(const lq_readout *readout, const lq_sylvester *s, cons
     }
 }
 
-/* E(u_k) of one node = direct + sum_l weights[k][l] C(u_l), at every depth; C and E are `step` apart. */
+/* E(u_k) of one node = direct + sum_l weights[k][l] C(u_l), at every depth; C and E are `step` apart. Four
+ * depths at a time: all depth counts are multiples of four. */
 static double travel_node(int depths, const double *weights, const lq_v8 *c, size_t step, const lq_v8 *direct,
                           lq_v8 *e) {
-    double most = 0.0;
-    for (int k = 0; k < depths; k++) {
-        lq_v8 sum = direct[k];
-        for (int l = 0; l < depths; l++) sum += weights[k * depths + l] * c[(size_t)l * step];
-        const double change = largest_change(&sum, &e[(size_t)k * step]);
-        most = change > most ? change : most;
-        e[(size_t)k * step] = sum;
+    lq_v8 change = {0.0};
+    for (int k = 0; k < depths; k += 4) {
+        const double *w = weights + k * depths;
+        lq_v8 sum[4];
+        for (int b = 0; b < 4; b++) sum[b] = direct[k + b];
+        for (int l = 0; l < depths; l++) {
+            const lq_v8 value = c[(size_t)l * step];
+            for (int b = 0; b < 4; b++) sum[b] += w[b * depths + l] * value;
+        }
+        for (int b = 0; b < 4; b++) {
+            lq_v8 *at = &e[(size_t)(k + b) * step];
+            raise_change(&change, &sum[b], at);
+            *at = sum[b];
+        }
     }
+    double most = 0.0;
+    for (int l = 0; l < LQ_LANES; l++) most = change[l] > most ? change[l] : most;
     return most;
 }
 

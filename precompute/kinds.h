@@ -12,9 +12,9 @@ extern const lq_evaluator lq_evaluate_tir_pass;             /* kind_tir.c */
 extern const lq_evaluator lq_evaluate_tir_loss;             /* kind_tir.c */
 extern const lq_evaluator lq_evaluate_fgd_dielectric;       /* kind_dielectric.c */
 extern const lq_evaluator lq_evaluate_transmission;         /* kind_dielectric.c */
-extern const lq_evaluator lq_evaluate_diffuse_transmission; /* kind_dielectric.c */
-extern const lq_evaluator lq_evaluate_diffuse_reflection;   /* kind_dielectric.c */
-extern const lq_evaluator lq_evaluate_variance;             /* kind_dielectric.c */
-extern const lq_evaluator lq_evaluate_coated_lambertian;    /* kind_dielectric.c */
+extern const lq_evaluator lq_evaluate_diffuse_transmission; /* kind_diffuse.c */
+extern const lq_evaluator lq_evaluate_diffuse_reflection;   /* kind_diffuse.c */
+extern const lq_evaluator lq_evaluate_variance;             /* kind_diffuse.c */
+extern const lq_evaluator lq_evaluate_coated_lambertian;    /* kind_coated.c */
 
 #endif

@@ -11,8 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* |R + T - 1| at one level of resolution, and at mu <= 1e-3. */
-#define GAP         5e-10
+/* |R + T - 1| where both are solved apart, at one level of resolution, and at mu <= 1e-3. The passes end when
+ * all later ones would add 1e-9. */
+#define GAP         3e-8
 #define GRAZING_GAP 2e-6
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -161,24 +162,29 @@ static void variance_of_what_leaves(void **state) {
 /* ------------------------------------------------------------------------------------ identities */
 
 enum { GAP_MUS = 9, GRAZING_MUS = 3 };
-static const double gap_mu[GAP_MUS] = {0.0, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.745, 0.9, 1.0};
+static const double gap_mu[GAP_MUS] = {1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.745, 0.9, 1.0};
 
 /* Largest |R + T - 1| over the first, grazing, and over the other cosines. */
 static void unity_gap(lq_rough *rough, double eta, int level, int side, double *gap) {
-    const double one = 1.0;
-    double back[GAP_MUS], through[GAP_MUS];
-    const lq_question questions[] = {{side, 0, LQ_MULTIPLE, gap_mu, GAP_MUS, &one, 1, back},
-                                     {side, 1, LQ_MULTIPLE, gap_mu, GAP_MUS, &one, 1, through}};
+    /* A coating so clear that it is rounding: with tau = 1 the solver takes one side for the rest of the
+     * other. */
+    const double one = 1.0, clear = 1.0 - 0x1p-53;
+    double back[GAP_MUS], through[GAP_MUS], rest[GAP_MUS];
+    const lq_question questions[] = {{side, side, LQ_MULTIPLE, gap_mu, GAP_MUS, &clear, 1, back},
+                                     {side, 1 - side, LQ_MULTIPLE, gap_mu, GAP_MUS, &clear, 1, through},
+                                     {side, 1 - side, LQ_MULTIPLE, gap_mu, GAP_MUS, &one, 1, rest}};
     /* Nearly matched media: a fine level may be void, and says so; a coarser one holds. */
     lq_status status = LQ_NOT_CONVERGED;
     for (; status == LQ_NOT_CONVERGED && level >= 0; level--)
-        status = lq_dielectric_answer(rough, eta, level, questions, 2, NULL);
+        status = lq_dielectric_answer(rough, eta, level, questions, 3, NULL);
     assert_int_equal(status, LQ_OK);
     for (int m = 0; m < GAP_MUS; m++) {
         assert_true(back[m] >= -1e-12 && back[m] <= 1.0 + 1e-12);
         assert_true(through[m] >= -1e-12 && through[m] <= 1.0 + 1e-12);
         double *most = &gap[m >= GRAZING_MUS];
         *most = fmax(*most, fabs(back[m] + through[m] - 1.0));
+        /* The two are read on other nodes; those of nearly matched media are of first order only. */
+        if (fabs(eta - 1.0) > 1e-3) assert_near(rest[m], through[m], 2e-5);
     }
 }
 
@@ -263,7 +269,7 @@ static void white_base_returns_everything(void **state) {
             for (size_t m = 0; m < COUNT(mus); m++) {
                 const double albedo = coated(mus[m], alphas[a], etas[e], 1.0, 1.0);
                 worst = fmax(worst, fabs(albedo - 1.0));
-                assert_near(albedo, 1.0, 1e-3);
+                assert_near(albedo, 1.0, 1e-12);
             }
     print_message("white base under a lossless coating: 1 within %.2g\n", worst);
     /* A black base shows the interface alone; D22 eq. 3 from the four tables. */

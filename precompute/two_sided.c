@@ -1,0 +1,131 @@
+/* Energies of one interface, refined: see two_sided.h. */
+#include "precompute/two_sided.h"
+
+#include "precompute/first_bounce.h"
+#include "tables/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------------------- refinement */
+
+/* Every level is at least 2.5 times as good as the one before, so that 1.25 of what has changed is twice what
+ * is left. Seen from the denser side, where energies step at the critical angle, the factor is 2 in places.
+ */
+static const double CAUTION = 1.25, DENSER_CAUTION = 2.0;
+
+lq_status lq_refine(lq_rough *rough, double eta, double tolerance, lq_level_values *evaluate,
+                    const void *asked, size_t count, double *values, double *estimate, lq_error *error) {
+    double *now = malloc(count * sizeof *now);
+    if (!now) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", count);
+    lq_status status = LQ_OK;
+    *estimate = 1.0;
+    for (int level = 0; status == LQ_OK && level<LQ_DIELECTRIC_LEVELS && * estimate> tolerance; level++) {
+        status = evaluate(rough, eta, level, asked, now, error);
+        if (status != LQ_OK) break;
+        double change = 0.0;
+        for (size_t i = 0; level > 0 && i < count; i++) change = fmax(change, fabs(now[i] - values[i]));
+        if (level > 0) *estimate = fmax((eta < 1.0 ? DENSER_CAUTION : CAUTION) * change, 0.1 * tolerance);
+        memcpy(values, now, count * sizeof *now);
+    }
+    free(now);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+}
+
+/* --------------------------------------------------------------------------- transmittances */
+
+lq_tau_nodes lq_tau_nodes_choose(const double *tau, size_t count, int level) {
+    static const size_t nodes[LQ_DIELECTRIC_LEVELS] = {16, 24, 24, 32, 32, 32};
+    lq_tau_nodes t = {.count = count, .direct = count <= nodes[level]};
+    if (!t.direct) t.count = nodes[level];
+    for (size_t k = 0; k < t.count; k++) {
+        const double v = 0.5 - 0.5 * cos(3.14159265358979323846 * (double)k / (double)(t.count - 1));
+        t.tau[k] = t.direct ? tau[k] : v * v;
+    }
+    return t;
+}
+
+void lq_tau_weights(const lq_tau_nodes *t, size_t index, double tau, double *weight) {
+    const double v = sqrt(tau);
+    double sum = 0.0;
+    for (size_t k = 0; k < t->count; k++) weight[k] = 0.0;
+    for (size_t k = 0; k < t->count; k++) {
+        const double gap = v - sqrt(t->tau[k]);
+        if (t->direct ? k == index : fabs(gap) < 1e-14) {
+            for (size_t l = 0; l < t->count; l++) weight[l] = l == k ? 1.0 : 0.0;
+            return;
+        }
+        if (t->direct) continue;
+        const double end = k == 0 || k + 1 == t->count ? 0.5 : 1.0;
+        weight[k] = (k % 2 ? -end : end) / gap;
+        sum += weight[k];
+    }
+    for (size_t k = 0; k < t->count; k++) weight[k] /= sum;
+}
+
+/* ------------------------------------------------------------------- directional: R01 and T01 */
+
+/* The estimate of a smooth interface, whose energies are exact at alpha = 0 and off by what masking and the
+ * critical angle move over cosines of a few alpha otherwise. */
+static double smooth_estimate(double alpha) {
+    return 1e-15 + 30.0 * alpha;
+}
+
+/* values[t * mu_count + m] */
+static lq_status directional_values(lq_rough *rough, double eta, int level, const void *asked, double *values,
+                                    lq_error *error) {
+    const lq_directional *d = asked;
+    if (lq_dielectric_is_closed(rough, eta)) {
+        /* tau^(1/mu) straight through matched media is all but a step at grazing: no interpolation holds it.
+         */
+        const lq_question q = {0,           d->reward_side, d->scattering, d->mu,
+                               d->mu_count, d->tau,         d->tau_count,  values};
+        return lq_dielectric_answer(rough, eta, level, &q, 1, error);
+    }
+    const lq_tau_nodes nodes = lq_tau_nodes_choose(d->tau, d->tau_count, level);
+    double *answer = malloc(nodes.count * d->mu_count * sizeof *answer);
+    if (!answer) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", d->mu_count);
+    const lq_question q = {0,           d->reward_side, d->scattering, d->mu,
+                           d->mu_count, nodes.tau,      nodes.count,   answer};
+    const lq_status status = lq_dielectric_answer(rough, eta, level, &q, 1, error);
+    for (size_t t = 0; status == LQ_OK && t < d->tau_count; t++) {
+        double weight[LQ_TAUS_MAX];
+        lq_tau_weights(&nodes, t, d->tau[t], weight);
+        for (size_t m = 0; m < d->mu_count; m++) {
+            double sum = 0.0;
+            for (size_t k = 0; k < nodes.count; k++) sum += weight[k] * answer[k * d->mu_count + m];
+            values[t * d->mu_count + m] = fmin(fmax(sum, 0.0), 1.0);
+        }
+    }
+    free(answer);
+    return status;
+}
+
+/* Cosines watched besides those asked for, so that two levels do not agree by accident. */
+enum { PROBES = 8 };
+
+lq_status lq_directional_solve(lq_rough *rough, double eta, double tolerance, const lq_directional *d,
+                               double *values, double *estimate, lq_error *error) {
+    const double probes[PROBES] = {0.3 * rough->alpha, rough->alpha, 0.05, 0.2, 0.45, 0.7, 0.9, 1.0};
+    const size_t all = d->mu_count < 2 * PROBES ? d->mu_count + PROBES : d->mu_count;
+    double *mu = malloc(all * sizeof *mu), *wide = malloc(all * d->tau_count * sizeof *wide);
+    lq_status status = LQ_NO_MEMORY;
+    if (mu && wide) {
+        lq_directional watched = *d;
+        memcpy(mu, d->mu, d->mu_count * sizeof *mu);
+        if (all > d->mu_count) memcpy(mu + d->mu_count, probes, sizeof probes);
+        watched.mu = mu;
+        watched.mu_count = all;
+        status = lq_refine(rough, eta, tolerance, directional_values, &watched, all * d->tau_count, wide,
+                           estimate, error);
+        for (size_t t = 0; t < d->tau_count; t++)
+            memcpy(values + t * d->mu_count, wide + t * all, d->mu_count * sizeof *values);
+        if (rough->alpha < LQ_SMOOTH_ALPHA) *estimate = smooth_estimate(rough->alpha);
+    } else {
+        lq_fail(error, status, "no memory for %zu cosines", all);
+    }
+    free(mu);
+    free(wide);
+    return status;
+}
