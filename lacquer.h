@@ -340,6 +340,7 @@ typedef enum lq_coordinate {
     LQ_COORDINATE_AXIS,     /* x[axis] */
     LQ_COORDINATE_CRITICAL, /* mu = x[axis] from the critical cosine c = sqrt(max(1 - eta^2, 0)), eta =
                              * x[other]: mu < c ? -sqrt(1 - mu / c) : sqrt((mu - c) / (1 - c)), in [-1, 1] */
+    LQ_COORDINATE_COSINE,   /* the critical cosine c itself, of eta = x[axis] */
     LQ_COORDINATES
 } lq_coordinate;
 
@@ -439,11 +440,12 @@ typedef struct lq_pca_options {
     int value_axis;               /* LQ_VALUE_BEER: that of tau */
     size_t bases[LQ_MAX_STREAMS]; /* of the plane, for each stream; 0: the product of the separations' */
     size_t pairs;                 /* two axes separated: products of lines that make one base of both */
-    bool critical;                /* the plane's mu is measured from the critical cosine (plane: mu, eta) */
+    bool critical;                /* plane mu, eta: mu is measured from the critical cosine, eta by it */
     double power;                 /* of the error that is minimised: 2 is rms, 8 close to the largest */
     int sweeps;
-    size_t texels[LQ_MAX_AXES];  /* of each axis; 0: one a node */
-    int split_axis, split_count; /* pieces: the table is cut at nodes of one axis */
+    size_t texels[LQ_MAX_AXES];    /* of each axis; 0: one a node */
+    double exponents[LQ_MAX_AXES]; /* of the map of the texels: 1 linear, 2 sqrt, ...; 0: that of the table */
+    int split_axis, split_count;   /* pieces: the table is cut at nodes of one axis */
     double splits[LQ_MAX_PIECES - 1];
 } lq_pca_options;
 
@@ -462,6 +464,36 @@ typedef struct lq_pca_errors {
 
 lq_status lq_factored_errors(const lq_factored *factored, const lq_table *exact, int channel,
                              lq_pca_errors *errors, lq_error *error);
+
+typedef enum lq_pca_norm { LQ_PCA_MAX, LQ_PCA_RMS, LQ_PCA_P99 } lq_pca_norm;
+
+/* What a search is after, and how it gets exact values. */
+typedef struct lq_pca_goal {
+    size_t struct_size;
+    lq_pca_norm norm;
+    double budget; /* the smallest factors within it; 0: the most exact within `bytes` */
+    size_t bytes;  /* 0: any */
+    /* Exact values at points of its own choice within a box of the axes, as a table; NULL: the table's nodes
+     * inside the box serve. */
+    lq_status (*exact)(void *user, const double *min, const double *max, lq_table **values, lq_error *error);
+    void *user;
+} lq_pca_goal;
+
+/* One factorisation a search tried, of one piece. */
+typedef struct lq_pca_try {
+    int piece;
+    lq_pca_options options;
+    size_t bytes;
+    lq_pca_errors errors;
+    bool chosen;
+} lq_pca_try;
+
+/* Search ranks, separations, transforms and texture sizes, for each piece that `start` (splits, sweeps) asks
+ * for. `tries` gets what was tried, free() it. LQ_NOT_CONVERGED: the budget was not met; the best is given.
+ */
+lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options *start,
+                        const lq_pca_goal *goal, const lq_progress *progress, lq_factored **factored,
+                        lq_pca_try **tries, size_t *try_count, lq_error *error);
 
 #ifdef __cplusplus
 }

@@ -14,7 +14,7 @@ enum { GPU_FRACTION_BITS = 8 };
 /* ------------------------------------------------------------------ coordinates and filtering */
 
 const char *lq_coordinate_name(lq_coordinate coordinate) {
-    static const char *const names[LQ_COORDINATES] = {"axis", "critical"};
+    static const char *const names[LQ_COORDINATES] = {"axis", "critical", "cosine"};
     return coordinate < LQ_COORDINATES ? names[coordinate] : "unknown";
 }
 
@@ -26,8 +26,9 @@ const char *lq_value_name(lq_value value) {
 double lq_coordinate_at(const lq_texture_axis *axis, const double *x) {
     const double at = x[axis->axis];
     if (axis->coordinate == LQ_COORDINATE_AXIS) return at;
-    const double eta = x[axis->other];
+    const double eta = axis->coordinate == LQ_COORDINATE_COSINE ? at : x[axis->other];
     const double critical = eta < 1.0 ? sqrt((1.0 - eta) * (1.0 + eta)) : 0.0;
+    if (axis->coordinate == LQ_COORDINATE_COSINE) return critical;
     if (at < critical) return -sqrt(1.0 - at / critical);
     return critical < 1.0 ? sqrt((at - critical) / (1.0 - critical)) : 1.0;
 }
@@ -203,7 +204,7 @@ lq_status lq_factored_set_fact(lq_factored *factored, const char *key, const cha
 /* ------------------------------------------------------------------ what must hold */
 
 static lq_status check_axis(const lq_factored *factored, const lq_texture_axis *axis, lq_error *error) {
-    const bool reads_other = axis->coordinate != LQ_COORDINATE_AXIS;
+    const bool reads_other = axis->coordinate == LQ_COORDINATE_CRITICAL;
     if (axis->coordinate >= LQ_COORDINATES || axis->axis < 0 || axis->axis >= factored->axis_count ||
         (reads_other && (axis->other < 0 || axis->other >= factored->axis_count)))
         return lq_fail(error, LQ_FORMAT, "a texture axis does not measure an axis of the table");

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "pca/factors.h"
+#include "pca/measure.h"
 #include "tables/status.h"
 
 static void node_point(const lq_table *table, size_t entry, double *x) {
@@ -54,4 +55,34 @@ lq_status lq_factored_errors(const lq_factored *factored, const lq_table *exact,
     summarise(exact, sizes, errors);
     free(sizes);
     return LQ_OK;
+}
+
+lq_status lq_nodes_within(const lq_table *table, const double *min, const double *max, lq_table **values,
+                          lq_error *error) {
+    lq_axis axes[LQ_MAX_AXES] = {0};
+    const char *names[LQ_MAX_CHANNELS];
+    lq_status status = LQ_OK;
+    for (int a = 0; a < table->axis_count && status == LQ_OK; a++) {
+        size_t first = 0, count = 0;
+        for (size_t i = 0; i < table->axes[a].size; i++)
+            if (table->axes[a].nodes[i] >= min[a] && table->axes[a].nodes[i] <= max[a] && count++ == 0)
+                first = i;
+        status = count > 0 ? lq_axis_make_custom(&axes[a], table->axes[a].name, table->axes[a].nodes + first,
+                                                 count, error)
+                           : lq_fail(error, LQ_BAD_INPUT, "no node of %s in [%g, %g]", table->axes[a].name,
+                                     min[a], max[a]);
+    }
+    for (int c = 0; c < table->channel_count; c++) names[c] = table->channel_names[c];
+    if (status == LQ_OK)
+        status = lq_table_create(values, axes, table->axis_count, names, table->channel_count, error);
+    const size_t entries = status == LQ_OK ? lq_table_entries(*values) : 0;
+    for (size_t i = 0; i < entries; i++) {
+        double x[LQ_MAX_AXES];
+        for (size_t a = 0, rest = i; a < (size_t)table->axis_count; rest /= axes[a].size, a++)
+            x[a] = axes[a].nodes[rest % axes[a].size];
+        for (int c = 0; c < table->channel_count; c++)
+            (*values)->channels[c][i] = (float)lq_table_lookup(table, c, x);
+    }
+    for (int a = 0; a < table->axis_count; a++) lq_axis_free(&axes[a]);
+    return status;
 }

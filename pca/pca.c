@@ -72,12 +72,13 @@ static lq_status check_critical(const lq_table *table, const lq_pca_options *opt
     const int mu = lq_table_axis(table, "mu"), eta = lq_table_axis(table, "eta");
     if (!options->critical) return LQ_OK;
     bool good = mu >= 0 && eta >= 0 && table->axes[mu].size > 1 && table->axes[eta].size > 1;
+    good = good && table->axes[eta].min < 1.0;
     for (int i = 0; i < options->separation_count; i++)
         for (int j = 0; j < options->separations[i].axis_count; j++)
             good = good && options->separations[i].axes[j] != mu && options->separations[i].axes[j] != eta;
     if (good) return LQ_OK;
     return lq_fail(error, LQ_BAD_INPUT,
-                   "the critical cosine needs mu and eta in one plane: separate the others");
+                   "the critical cosine needs mu and eta below 1 in one plane: separate the others");
 }
 
 static lq_status check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error) {
@@ -97,26 +98,14 @@ static lq_status check_splits(const lq_table *table, const lq_pca_options *optio
     return LQ_OK;
 }
 
-lq_status lq_pca_check(const lq_table *table, int channel, const lq_pca_options *options, lq_error *error) {
+lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_options *options,
+                             lq_error *error) {
     if (options->struct_size != sizeof *options)
         return lq_fail(error, LQ_BAD_INPUT,
                        "options of another version; start from lq_pca_options_default()");
     if (channel < 0 || channel >= table->channel_count)
         return lq_fail(error, LQ_BAD_INPUT, "channel %d; the table has %d", channel, table->channel_count);
-    for (int k = 0; k < LQ_MAX_STREAMS; k++)
-        if (options->bases[k] > LQ_MAX_BASES)
-            return lq_fail(error, LQ_BAD_INPUT, "%zu bases; accepted are 1 to %d", options->bases[k],
-                           LQ_MAX_BASES);
-    if (options->pairs > LQ_MAX_PAIRS || !(options->power >= 2.0 && options->power <= 64.0) ||
-        options->sweeps < 0)
-        return lq_fail(error, LQ_BAD_INPUT,
-                       "%zu pairs, power %g, %d sweeps; accepted are up to %d pairs and a "
-                       "power of 2 to 64",
-                       options->pairs, options->power, options->sweeps, LQ_MAX_PAIRS);
-    lq_status status = check_separations(table, options, error);
-    if (status == LQ_OK) status = check_value(table, options, error);
-    if (status == LQ_OK) status = check_critical(table, options, error);
-    if (status == LQ_OK) status = check_splits(table, options, error);
+    lq_status status = check_splits(table, options, error);
     const size_t entries = lq_table_entries(table);
     for (size_t i = 0; i < entries && status == LQ_OK; i++)
         if (!isfinite(table->channels[channel][i]))
@@ -124,6 +113,31 @@ lq_status lq_pca_check(const lq_table *table, int channel, const lq_pca_options 
                 lq_fail(error, LQ_BAD_INPUT, "the table holds %g at entry %zu; accepted are finite values",
                         (double)table->channels[channel][i], i);
     return status;
+}
+
+static lq_status check_numbers(const lq_pca_options *options, lq_error *error) {
+    for (int k = 0; k < LQ_MAX_STREAMS; k++)
+        if (options->bases[k] > LQ_MAX_BASES)
+            return lq_fail(error, LQ_BAD_INPUT, "%zu bases; accepted are 1 to %d", options->bases[k],
+                           LQ_MAX_BASES);
+    if (lq_separated_bases(options) > LQ_MAX_BASES && options->scheme == LQ_JOINT && options->bases[0] == 0)
+        return lq_fail(error, LQ_BAD_INPUT, "%zu bases; accepted are 1 to %d", lq_separated_bases(options),
+                       LQ_MAX_BASES);
+    if (options->pairs <= LQ_MAX_PAIRS && options->power >= 2.0 && options->power <= 64.0 &&
+        options->sweeps >= 0)
+        return LQ_OK;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "%zu pairs, power %g, %d sweeps; accepted are up to %d pairs and a power "
+                   "of 2 to 64",
+                   options->pairs, options->power, options->sweeps, LQ_MAX_PAIRS);
+}
+
+static lq_status check(const lq_table *table, int channel, const lq_pca_options *options, lq_error *error) {
+    lq_status status = lq_pca_check_table(table, channel, options, error);
+    if (status == LQ_OK) status = check_separations(table, options, error);
+    if (status == LQ_OK) status = check_numbers(options, error);
+    if (status == LQ_OK) status = check_value(table, options, error);
+    return status == LQ_OK ? check_critical(table, options, error) : status;
 }
 
 /* ------------------------------------------------------------------ the call */
@@ -179,33 +193,18 @@ static bool report_share(void *user, double fraction) {
 
 static lq_status add_piece(const lq_table *table, int channel, const lq_pca_options *options,
                            const lq_progress *progress, lq_factored *factored, lq_error *error) {
-    const int p = factored->piece_count++;
-    lq_piece *piece = &factored->pieces[p];
-    for (int a = 0; a < table->axis_count; a++) {
-        piece->min[a] = table->axes[a].min;
-        piece->max[a] = table->axes[a].max;
-    }
-    if (p > 0) piece->min[options->split_axis] = options->splits[p - 1];
-    if (p < options->split_count) piece->max[options->split_axis] = options->splits[p];
-    lq_grid grid;
-    float *samples = NULL;
-    share part = {progress, p, options->split_count + 1};
+    share part = {progress, factored->piece_count, options->split_count + 1};
     const lq_progress shared = {report_share, &part};
-    lq_status status = lq_piece_grid(table, options, piece, &grid, error);
-    if (status != LQ_OK) return status;
-    status = lq_unfold(table, channel, &grid, &samples, error);
-    if (status == LQ_OK)
-        status = lq_piece_fit(samples, &grid, options, progress && progress->report ? &shared : NULL, piece,
-                              error);
-    free(samples);
-    lq_grid_free(&grid);
-    return status;
+    lq_piece *piece = &factored->pieces[factored->piece_count];
+    lq_piece_box(table, options, factored->piece_count++, piece);
+    return lq_piece_make(table, channel, options, progress && progress->report ? &shared : NULL, piece,
+                         error);
 }
 
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error) {
     *factored = NULL;
-    lq_status status = lq_pca_check(table, channel, options, error);
+    lq_status status = check(table, channel, options, error);
     if (status == LQ_OK) status = lq_factored_start(table, channel, factored, error);
     for (int p = 0; p <= options->split_count && status == LQ_OK; p++)
         status = add_piece(table, channel, options, progress, *factored, error);

@@ -19,27 +19,49 @@ static size_t nodes_within(const lq_axis *axis, double min, double max) {
 }
 
 /* Texels along a table axis: its nodes where these are regular and all in the piece, otherwise as many,
- * linear. */
+ * linear.
+ */
 static lq_status axis_texels(const lq_table *table, const lq_pca_options *options, const lq_piece *piece,
                              int a, lq_texture_axis *out, lq_error *error) {
     const lq_axis *axis = &table->axes[a];
     const size_t inside = nodes_within(axis, piece->min[a], piece->max[a]);
     const size_t count = options->texels[a] > 0 ? options->texels[a] : inside;
     const bool whole = inside == axis->size && axis->map != LQ_MAP_CUSTOM;
+    const double exponent = options->exponents[a] > 0.0 ? options->exponents[a]
+                            : whole                     ? axis->exponent
+                                                        : 1.0;
+    const lq_map map = exponent == 1.0 ? LQ_MAP_LINEAR : exponent == 2.0 ? LQ_MAP_SQRT : LQ_MAP_POWER;
     *out = (lq_texture_axis){.coordinate = LQ_COORDINATE_AXIS, .axis = a};
-    return lq_axis_make(&out->texels, axis->name, piece->min[a], piece->max[a], count,
-                        whole ? axis->map : LQ_MAP_LINEAR, axis->exponent, error);
+    return lq_axis_make(&out->texels, axis->name, piece->min[a], piece->max[a], count, map, exponent, error);
 }
 
-/* mu from the critical cosine: from as far below as the smallest eta needs, to grazing's opposite. */
-static lq_status critical_texels(const lq_piece *piece, int mu, int eta, size_t count, lq_texture_axis *out,
+/* The texels of a coordinate other than an axis itself, over what it covers in the piece. */
+static lq_status other_texels(lq_texture_axis *out, const char *name, double min, double max, size_t count,
+                              lq_error *error) {
+    return lq_axis_make(&out->texels, name, min, max, count, LQ_MAP_LINEAR, 1.0, error);
+}
+
+/* mu from the critical cosine, from as far below as the smallest eta needs; eta by its critical cosine. */
+static lq_status critical_texels(const lq_table *table, const lq_piece *piece, lq_grid *grid,
                                  lq_error *error) {
-    *out = (lq_texture_axis){.coordinate = LQ_COORDINATE_CRITICAL, .axis = mu, .other = eta};
+    const int mu = lq_table_axis(table, "mu"), eta = lq_table_axis(table, "eta");
     double x[LQ_MAX_AXES] = {0.0};
-    x[mu] = piece->min[mu];
-    x[eta] = piece->min[eta];
-    const double least = lq_coordinate_at(out, x);
-    return lq_axis_make(&out->texels, "mu-critical", fmin(least, 0.0), 1.0, count, LQ_MAP_LINEAR, 1.0, error);
+    lq_status status = LQ_OK;
+    for (int a = 0; a < 2 && status == LQ_OK; a++) {
+        lq_texture_axis *axis = &grid->plane[a];
+        const size_t count = axis->texels.size;
+        const bool is_mu = axis->axis == mu;
+        lq_axis_free(&axis->texels);
+        axis->coordinate = is_mu ? LQ_COORDINATE_CRITICAL : LQ_COORDINATE_COSINE;
+        axis->other = is_mu ? eta : 0;
+        x[mu] = piece->min[mu];
+        x[eta] = piece->min[eta];
+        const double widest = lq_coordinate_at(axis, x);
+        x[eta] = piece->max[eta];
+        status = is_mu ? other_texels(axis, "mu-critical", fmin(widest, 0.0), 1.0, count, error)
+                       : other_texels(axis, "critical", lq_coordinate_at(axis, x), widest, count, error);
+    }
+    return status;
 }
 
 static bool is_separated(const lq_pca_options *options, int a) {
@@ -65,13 +87,7 @@ static lq_status fill_grid(const lq_table *table, const lq_pca_options *options,
             grid->rest_count += status == LQ_OK;
         }
     if (status != LQ_OK || !options->critical) return status;
-    lq_texture_axis critical;
-    const int mu = lq_table_axis(table, "mu"), eta = lq_table_axis(table, "eta");
-    status = critical_texels(piece, mu, eta, grid->plane[0].texels.size, &critical, error);
-    if (status != LQ_OK) return status;
-    lq_axis_free(&grid->plane[0].texels);
-    grid->plane[0] = critical;
-    return LQ_OK;
+    return critical_texels(table, piece, grid, error);
 }
 
 lq_status lq_piece_grid(const lq_table *table, const lq_pca_options *options, const lq_piece *piece,
@@ -93,25 +109,25 @@ static void set_stream(const lq_grid *grid, lq_fit *fit, int k, int axes, size_t
 
 /* Which column of the stream a column of the samples reads. */
 static void set_columns(const lq_grid *grid, lq_stream *s, size_t columns) {
-    const size_t first = grid->rest[0].texels.size;
+    const size_t first = grid->rest_count > 0 ? grid->rest[0].texels.size : 1;
     for (size_t c = 0; c < columns; c++) {
         const size_t i = s->axes & 1 ? c % first : 0, j = s->axes & 2 ? c / first : 0;
         s->column[c] = j * s->size[0] + i;
     }
 }
 
-static size_t separated_bases(const lq_pca_options *options) {
+size_t lq_separated_bases(const lq_pca_options *options) {
     size_t bases = 1;
     for (int i = 0; i < options->separation_count; i++) bases *= options->separations[i].bases;
     return bases;
 }
 
 static void plan_fit(const lq_grid *grid, const lq_pca_options *options, lq_fit *fit) {
-    const int all = grid->rest_count > 1 ? 3 : 1;
+    const int all = (1 << grid->rest_count) - 1; /* of none, one or two separated axes */
     const size_t pairs = options->separation_count > 1 ? (options->pairs > 0 ? options->pairs : 1) : 0;
     fit->value = options->value;
     fit->power = options->power;
-    const size_t bases = options->bases[0] > 0 ? options->bases[0] : separated_bases(options);
+    const size_t bases = options->bases[0] > 0 ? options->bases[0] : lq_separated_bases(options);
     if (options->value != LQ_VALUE_BEER) {
         fit->stream_count = 1;
         set_stream(grid, fit, 0, all, bases, pairs);
@@ -132,6 +148,11 @@ static void set_depth(const lq_grid *grid, const lq_pca_options *options, size_t
     }
 }
 
+/* Singular vectors already have the least rms error of a plain value where nothing ties the columns. */
+static bool is_best(const lq_fit *fit) {
+    return fit->value == LQ_VALUE_PLAIN && fit->power == 2.0 && fit->streams[0].pairs == 0;
+}
+
 static lq_status joint(const float *samples, const lq_grid *grid, const lq_pca_options *options,
                        const lq_progress *progress, double *depth, lq_piece *piece, lq_error *error) {
     lq_fit fit = {
@@ -142,7 +163,8 @@ static lq_status joint(const float *samples, const lq_grid *grid, const lq_pca_o
     if (status != LQ_OK) return status;
     for (int k = 0; k < fit.stream_count; k++) set_columns(grid, &fit.streams[k], fit.columns);
     status = lq_fit_start(&fit, error);
-    if (status == LQ_OK) status = lq_fit_refine(&fit, options->sweeps, false, progress, error);
+    if (status == LQ_OK && !is_best(&fit))
+        status = lq_fit_refine(&fit, options->sweeps, false, progress, error);
     if (status == LQ_OK) status = lq_assemble_fit(&fit, grid, piece, error);
     lq_fit_free(&fit);
     piece->value = options->value;
@@ -152,8 +174,8 @@ static lq_status joint(const float *samples, const lq_grid *grid, const lq_pca_o
 
 /* ------------------------------------------------------------------ either scheme */
 
-lq_status lq_piece_fit(const float *samples, const lq_grid *grid, const lq_pca_options *options,
-                       const lq_progress *progress, lq_piece *piece, lq_error *error) {
+static lq_status fit_samples(const float *samples, const lq_grid *grid, const lq_pca_options *options,
+                             const lq_progress *progress, lq_piece *piece, lq_error *error) {
     if (options->scheme == LQ_JOINT) {
         const size_t columns = lq_grid_columns(grid);
         double *depth = malloc(columns * sizeof *depth);
@@ -168,5 +190,27 @@ lq_status lq_piece_fit(const float *samples, const lq_grid *grid, const lq_pca_o
     piece->value = LQ_VALUE_PLAIN;
     status = lq_assemble_chain(&chain, grid, options, piece, error);
     lq_chain_free(&chain);
+    return status;
+}
+
+void lq_piece_box(const lq_table *table, const lq_pca_options *options, int p, lq_piece *piece) {
+    for (int a = 0; a < table->axis_count; a++) {
+        piece->min[a] = table->axes[a].min;
+        piece->max[a] = table->axes[a].max;
+    }
+    if (p > 0) piece->min[options->split_axis] = options->splits[p - 1];
+    if (p < options->split_count) piece->max[options->split_axis] = options->splits[p];
+}
+
+lq_status lq_piece_make(const lq_table *table, int channel, const lq_pca_options *options,
+                        const lq_progress *progress, lq_piece *piece, lq_error *error) {
+    lq_grid grid;
+    float *samples = NULL;
+    lq_status status = lq_piece_grid(table, options, piece, &grid, error);
+    if (status != LQ_OK) return status;
+    status = lq_unfold(table, channel, &grid, &samples, error);
+    if (status == LQ_OK) status = fit_samples(samples, &grid, options, progress, piece, error);
+    free(samples);
+    lq_grid_free(&grid);
     return status;
 }

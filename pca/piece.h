@@ -4,16 +4,23 @@
 
 #include "pca/unfold.h"
 
+/* The box of piece p of those that `options` cuts a table into. */
+void lq_piece_box(const lq_table *table, const lq_pca_options *options, int p, lq_piece *piece);
+
 /* The texels of a piece whose box is set: plane and rest of `options`. */
 lq_status lq_piece_grid(const lq_table *table, const lq_pca_options *options, const lq_piece *piece,
                         lq_grid *grid, lq_error *error);
 
-/* Factors of samples on that grid into the piece. */
-lq_status lq_piece_fit(const float *samples, const lq_grid *grid, const lq_pca_options *options,
-                       const lq_progress *progress, lq_piece *piece, lq_error *error);
+/* Fit the factors of a piece whose box is set. */
+lq_status lq_piece_make(const lq_table *table, int channel, const lq_pca_options *options,
+                        const lq_progress *progress, lq_piece *piece, lq_error *error);
 
-/* What can be asked of a table. */
-lq_status lq_pca_check(const lq_table *table, int channel, const lq_pca_options *options, lq_error *error);
+/* The table and its splits; then also how it is to be factored. */
+lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_options *options,
+                             lq_error *error);
+
+/* The number of the first bases of the joint scheme that `options` asks for. */
+size_t lq_separated_bases(const lq_pca_options *options);
 
 /* An empty factored table over the table's axes, with its facts. */
 lq_status lq_factored_start(const lq_table *table, int channel, lq_factored **factored, lq_error *error);

@@ -33,24 +33,26 @@ void lq_grid_free(lq_grid *grid) {
 /* x[axis] where the coordinate is u; what it reads besides must be set. */
 static double invert(const lq_texture_axis *axis, double u, const double *x) {
     if (axis->coordinate == LQ_COORDINATE_AXIS) return u;
+    if (axis->coordinate == LQ_COORDINATE_COSINE) return sqrt(fmax((1.0 - u) * (1.0 + u), 0.0));
     const double eta = x[axis->other], c = eta < 1.0 ? sqrt((1.0 - eta) * (1.0 + eta)) : 0.0;
     return u < 0.0 ? c * (1.0 - u * u) : c + u * u * (1.0 - c);
 }
 
-static void set_axes(const lq_texture_axis *axes, int count, size_t index, lq_coordinate first, double *x) {
+/* Those axes that read no other, or those that do. */
+static void set_axes(const lq_texture_axis *axes, int count, size_t index, bool reading, double *x) {
     for (int a = 0; a < count; a++) {
         const size_t i = index % axes[a].texels.size;
         index /= axes[a].texels.size;
-        if ((axes[a].coordinate == LQ_COORDINATE_AXIS) == (first == LQ_COORDINATE_AXIS))
+        if ((axes[a].coordinate == LQ_COORDINATE_CRITICAL) == reading)
             x[axes[a].axis] = invert(&axes[a], axes[a].texels.nodes[i], x);
     }
 }
 
 void lq_grid_point(const lq_grid *grid, size_t row, size_t column, double *x) {
     for (int a = 0; a < LQ_MAX_AXES; a++) x[a] = grid->fixed[a];
-    set_axes(grid->rest, grid->rest_count, column, LQ_COORDINATE_AXIS, x);
-    set_axes(grid->plane, grid->plane_count, row, LQ_COORDINATE_AXIS, x);
-    set_axes(grid->plane, grid->plane_count, row, LQ_COORDINATE_CRITICAL, x);
+    set_axes(grid->rest, grid->rest_count, column, false, x);
+    set_axes(grid->plane, grid->plane_count, row, false, x);
+    set_axes(grid->plane, grid->plane_count, row, true, x);
 }
 
 /* ------------------------------------------------------------------ interpolation between nodes */

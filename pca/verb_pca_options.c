@@ -85,6 +85,16 @@ static bool parse_split(pca_request *request, const lq_table *table) {
     return true;
 }
 
+static bool parse_map(const char *text, double *exponent) {
+    *exponent = strcmp(text, "linear") == 0 ? 1.0 : strcmp(text, "sqrt") == 0 ? 2.0 : 0.0;
+    if (*exponent > 0.0) return true;
+    if (strncmp(text, "power", 5) == 0 && cli_parse_number("--texels", text + 5, 0.1, 10.0, exponent))
+        return true;
+    if (strncmp(text, "power", 5) != 0)
+        cli_message("--texels: '%s' is not a map; accepted are linear, sqrt and powerP", text);
+    return false;
+}
+
 static bool parse_texels(pca_request *request, const lq_table *table) {
     for (int i = 0; i < request->texel_count; i++) {
         const char *text = request->texels[i], *equals = strchr(text, '=');
@@ -93,8 +103,11 @@ static bool parse_texels(pca_request *request, const lq_table *table) {
             return false;
         }
         const int a = find_axis("--texels", table, text, (size_t)(equals - text));
-        if (a < 0 || !cli_parse_count("--texels", equals + 1, 2, 4096, &request->options.texels[a]))
-            return false;
+        const char *colon = strchr(equals, ':');
+        char number[24];
+        snprintf(number, sizeof number, "%.*s", colon ? (int)(colon - equals - 1) : 23, equals + 1);
+        if (a < 0 || !cli_parse_count("--texels", number, 2, 4096, &request->options.texels[a])) return false;
+        if (colon && !parse_map(colon + 1, &request->options.exponents[a])) return false;
     }
     return true;
 }

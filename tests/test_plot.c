@@ -1,5 +1,5 @@
 /* Charts: the file is whole, text is escaped, undrawable points are left out, hopeless input is refused. */
-#include "validate/plot.h"
+#include "tables/plot.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,7 @@
  * the points that are drawn; the origin that a table's facts tell. */
 #include "validate/compare.h"
 #include "validate/draw.h"
-#include "validate/origin.h"
+#include "tables/origin.h"
 #include "validate/stream.h"
 #include "validate/walk_kind.h"
 

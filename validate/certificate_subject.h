@@ -4,7 +4,7 @@
 #define LACQUER_VALIDATE_CERTIFICATE_SUBJECT_H
 
 #include "validate/certificate.h"
-#include "validate/origin.h"
+#include "tables/origin.h"
 
 typedef struct lq_subject {
     char name[256];

@@ -1,7 +1,7 @@
 /* Error maps as coloured cells and histograms as curves. */
 #include "validate/report_maps.h"
 
-#include "validate/plot.h"
+#include "tables/plot.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "validate/report_ranks.h"
 
 #include "pca/factors.h"
-#include "validate/plot.h"
+#include "tables/plot.h"
 
 #include <math.h>
 #include <stdint.h>

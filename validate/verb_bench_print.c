@@ -2,8 +2,8 @@
 #include "validate/verb_bench.h"
 
 #include "tables/output.h"
-#include "validate/origin.h"
-#include "validate/plot.h"
+#include "tables/origin.h"
+#include "tables/plot.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "cli/settings.h"
 #include "validate/compare.h"
 #include "validate/draw.h"
-#include "validate/origin.h"
+#include "tables/origin.h"
 #include "validate/verb_validate_certify.h"
 
 #include <stdbool.h>

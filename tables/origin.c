@@ -1,5 +1,5 @@
 /* Rebuilds kind and settings from the facts of a table, refusing what it does not understand. */
-#include "validate/origin.h"
+#include "tables/origin.h"
 
 #include "tables/facts.h"
 #include "tables/status.h"

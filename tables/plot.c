@@ -1,5 +1,5 @@
 /* The SVG plotter: scales and ticks first, then the parts of the page from back to front. */
-#include "validate/plot.h"
+#include "tables/plot.h"
 
 #include "tables/output.h"
 #include "tables/status.h"
