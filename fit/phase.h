@@ -1,0 +1,9 @@
+/* Henyey-Greenstein as a lobe (B18 eq. 21). */
+#ifndef LACQUER_FIT_PHASE_H
+#define LACQUER_FIT_PHASE_H
+
+/* v_HG(g) = E[sin^2 theta] of the phase function over the forward hemisphere, normalised there; g in [0,1].
+ */
+double lq_phase_variance(double g);
+
+#endif
