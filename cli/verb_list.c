@@ -8,6 +8,9 @@
 static void print_ndfs(void) {
     printf("NDFs (--ndf)\n");
     for (size_t i = 0; i < lq_ndf_count(); i++) printf("  %-17s %s\n", lq_ndf_syntax(i), lq_ndf_title(i));
+    printf("  Every table, random walk and verb takes every NDF; alpha in [0, 1], but where a file or plugin "
+           "has\n"
+           "  fewer roughnesses. See docs/ndf.md.\n");
 }
 
 static void print_formats(void) {

@@ -34,7 +34,7 @@ static double end_slope(const double *x, const double *y, size_t n, int step) {
     return sum;
 }
 
-/* Hyman 1983, eq. 2.6: no steeper than three times either neighbour, and never against both. */
+/* Hyman 1983: no steeper than three times either neighbour, and never against both. */
 static double limited(double slope, double before, double after) {
     const double most = 3.0 * fmin(fabs(before), fabs(after));
     if (before * after > 0.0 && slope * before < 0.0) return 0.0;

@@ -12,7 +12,7 @@
 #define MU_AXIS_TWO_SIDED                                                                                    \
     { "mu", "cosine of incidence; below 1e-4 it is taken for 1e-4", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 #define ALPHA_AXIS                                                                                           \
-    { "alpha", "roughness, the GGX slope scale", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
+    { "alpha", "roughness, the slope scale of the NDF", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 
 static const lq_kind kinds[] = {
     {
@@ -228,7 +228,7 @@ static const lq_kind kinds[] = {
         .interface = "dielectric",
         .axis_count = 5,
         .axes = {{"mu", "cosine of incidence", 0.0, 1.0, 0.0, 1.0, 16, LQ_MAP_LINEAR},
-                 {"alpha", "roughness, the GGX slope scale", 0.0, 1.0, 0.0, 1.0, 16, LQ_MAP_LINEAR},
+                 {"alpha", "roughness, the slope scale of the NDF", 0.0, 1.0, 0.0, 1.0, 16, LQ_MAP_LINEAR},
                  {"eta", "index of the coating relative to the air above", 0.1, 10.0, 1.0, 2.5, 8,
                   LQ_MAP_LINEAR},
                  {"tau", "transmittance of the coating at normal incidence", 0.0, 1.0, 0.0, 1.0, 8,

@@ -34,7 +34,7 @@ static inline double value_of(const char *kind, const char *ndf, const double *p
 /* Solver against a random walk that shares the NDF and Fresnel code alone. */
 static inline void expect_walk_agrees(const char *kind, const char *ndf, const double *point,
                                       double tolerance) {
-    const lq_walk_run run = {.samples = 20000, .seed = 7, .threads = 1};
+    const lq_walk_run run = {.samples = 8000, .seed = 7, .threads = 1};
     lq_settings settings = lq_settings_default();
     lq_walk_mean mean[LQ_MAX_CHANNELS];
     lq_error error = {""};

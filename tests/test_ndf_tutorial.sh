@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Runs docs/tutorial-ndf.md as it is written, against an installed tree, and checks what the text says comes out.
+set -euo pipefail
+: "${LACQUER_BUILD:?build folder}" "${LACQUER_SOURCE:?source folder}"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+"${CMAKE_COMMAND:-cmake}" --install "$LACQUER_BUILD" --prefix "$work/prefix" >/dev/null
+PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name lacquer.pc)")
+export PKG_CONFIG_PATH PATH="$work/prefix/bin:$PATH"
+awk '/^```sh$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$LACQUER_SOURCE/docs/tutorial-ndf.md" >run.sh
+[ "$(grep -c '^lacquer' run.sh)" -ge 8 ] || { echo "FAIL: the tutorial has lost its commands" >&2; exit 1; }
+bash -euo pipefail run.sh >out 2>notes || {
+    cat out notes
+    echo "FAIL: exit $?" >&2
+    exit 1
+}
+
+expect() { # PATTERN FILE
+    grep -Eq "$1" "$2" || {
+        cat "$2"
+        echo "FAIL: no '$1' in $2" >&2
+        exit 1
+    }
+}
+expect '^(1|0\.99999[0-9]*|1\.0*) ± ' out
+expect '^sech.so: hyperbolic' <(sed 's/^lacquer [a-z]*: //' notes)
+expect 'D scaled by 0\.0868782 at alpha = 1' notes
+expect 'ndf +plugin:sech\.so#[0-9a-f]{16}' out
+[ "$(grep -c '^passed' out)" -eq 2 ] || { cat out; echo "FAIL: both walks pass" >&2; exit 1; }
+expect 'one roughness, alpha = 0\.[0-9]+ by its median slope' notes
+# 0.889 of GGX, 0.950, 0.941 of Beckmann; file = plugin to six digits
+grep -E '^[01]\.?[0-9]* ± ' out | awk '{ print $1 }' >values
+awk '{ v[NR] = $1 } END {
+    d = v[5] - v[6]
+    exit !(NR == 7 && v[2] ~ /^0.888/ && v[3] ~ /^0.950/ && v[4] ~ /^0.941/ && d < 1e-6 && d > -1e-6)
+}' values || { cat values; echo "FAIL: the order of the albedos, or file against plugin" >&2; exit 1; }
+echo "tutorial: $(wc -l <run.sh) lines run"
