@@ -180,6 +180,15 @@ says '^rms error 1e-04: solver .* times faster$'
     fail "bench.csv: $(head -n 1 bench.csv)"
 [ "$(grep -c ',walk,' bench.csv)" -eq 4 ] || fail "bench.csv has not 4 walks"
 grep -q '</svg>' bench.svg || fail "bench.svg is not whole"
+says_commit='lacquer [0-9.]+ \([0-9a-f]{7,}(-dirty)?\)|lacquer [0-9.]+,'
+grep -qE "$says_commit" bench.svg || fail "bench.svg does not name version and commit"
+run 0 bench albedo-average --report page --points 4 --samples 1000
+grep -q '</html>' page/index.html || fail "the page is not whole"
+grep -q '<img src="albedo-average.svg"' page/index.html || fail "the page shows no chart"
+grep -qE '<td>walk</td><td>1e\+03</td><td>4</td>' page/index.html || fail "the page has no row of the walk"
+[ "$(grep -c ',walk,' page/albedo-average.csv)" -eq 1 ] || fail "--samples 1000 is not one walk"
+refused 'leave out --csv' bench --report page --csv x.csv
+refused 'cannot make the folder' bench --report nowhere/page
 refused 'unknown table' bench nonsense
 refused 'one TABLE' bench albedo fgd
 refused 'nowhere' bench albedo --csv nowhere/bench.csv

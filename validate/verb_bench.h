@@ -24,6 +24,7 @@ typedef struct bench_job {
     const char *csv, *svg;
     size_t points, seed;
     bool full;
+    double longest_walk; /* samples; longer ones are left out */
     int threads;
     lq_axis axes[LQ_MAX_AXES];
     double reference_tolerance, reference_error; /* asked for; the largest estimate that came back */
@@ -46,5 +47,27 @@ const bench_row *bench_broken_row(const bench_job *job);
 void bench_print(const bench_job *job);
 lq_status bench_write_csv(const bench_job *job, lq_error *error);
 lq_status bench_write_svg(const bench_job *job, lq_error *error);
+void bench_describe_machine(int threads, char *text, size_t size);
+/* How a row was made: "solver", "walk", "solver, full grid". */
+const char *bench_method(const bench_row *row);
+
+/* One table compressed one way. */
+typedef struct bench_compression {
+    const char *kind, *scheme;
+    char separated[32]; /* "n+kappa:4" */
+    size_t entries, table_bytes, bytes;
+    double seconds;       /* CPU, without the table's */
+    double rms, p99, max; /* as a GPU looks it up, against the table */
+} bench_compression;
+
+enum { BENCH_MAX_COMPRESSIONS = 64 };
+
+/* Fresh tables, compressed with the schemes and numbers of bases of a fixed list; `only` of this kind, NULL:
+ * all. */
+lq_status bench_compress(const lq_kind *only, int threads, const lq_progress *progress,
+                         bench_compression *list, size_t *count, lq_error *error);
+
+/* The whole of `bench --report DIR`, of the kind of `like` or of all; returns the exit code. */
+int bench_report(const char *folder, const bench_job *like);
 
 #endif

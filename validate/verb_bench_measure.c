@@ -224,8 +224,9 @@ lq_status bench_measure(bench_job *job, const lq_progress *progress, lq_error *e
             status = run_row(job, job->axes, &to, progress, (bench_row){.setting = tolerances[i]}, error);
     const bool walks = lq_walk_knows(job->kind);
     for (size_t i = 0; walks && status == LQ_OK && i < sizeof sample_counts / sizeof sample_counts[0]; i++)
-        status = run_row(job, job->axes, &to, progress,
-                         (bench_row){.walk = true, .setting = sample_counts[i]}, error);
+        if (sample_counts[i] <= job->longest_walk)
+            status = run_row(job, job->axes, &to, progress,
+                             (bench_row){.walk = true, .setting = sample_counts[i]}, error);
     refer_free(&to);
     if (status == LQ_OK && job->full) status = run_full(job, progress, error);
     return status;

@@ -14,7 +14,7 @@ enum { LINE = 192 };
 /* The errors at which speeds are compared. */
 static const double equal_errors[] = {1e-3, 1e-4, 1e-5};
 
-static void describe_machine(const bench_job *job, char *text) {
+void bench_describe_machine(int threads, char *text, size_t size) {
     char line[LINE], name[LINE] = "unknown processor";
     FILE *file = fopen("/proc/cpuinfo", "r");
     while (file && fgets(line, sizeof line, file))
@@ -24,8 +24,8 @@ static void describe_machine(const bench_job *job, char *text) {
             break;
         }
     if (file) fclose(file);
-    snprintf(text, LINE, "lacquer %s%s, %d thread%s of %.100s", LQ_VERSION, LACQUER_COMMIT, job->threads,
-             job->threads == 1 ? "" : "s", name);
+    snprintf(text, size, "lacquer %s%s, %d thread%s of %.100s", LQ_VERSION, LACQUER_COMMIT, threads,
+             threads == 1 ? "" : "s", name);
 }
 
 static void describe_grid(const bench_job *job, char *text) {
@@ -36,7 +36,7 @@ static void describe_grid(const bench_job *job, char *text) {
                                  job->axes[a].size);
 }
 
-static const char *method(const bench_row *row) {
+const char *bench_method(const bench_row *row) {
     return row->walk ? "walk" : row->full ? "solver, full grid" : "solver";
 }
 
@@ -53,7 +53,7 @@ static void print_ratio(const bench_job *job, double error) {
 void bench_print(const bench_job *job) {
     char table[LINE], machine[LINE], grid[LINE];
     lq_origin_describe(job->kind, &job->options.settings, table, sizeof table);
-    describe_machine(job, machine);
+    bench_describe_machine(job->threads, machine, sizeof machine);
     describe_grid(job, grid);
     printf("%s; solver over %s nodes\n", table, grid);
     printf("errors at %zu entries, seed %zu, against the solver at %.0e\n%s\n\n", job->points, job->seed,
@@ -62,8 +62,8 @@ void bench_print(const bench_job *job) {
            "rms error", "max error");
     for (size_t i = 0; i < job->row_count; i++) {
         const bench_row *row = &job->rows[i];
-        printf("%-18s %9.0e %12zu %10.3g %12.3g %10.2e %10.2e\n", method(row), row->setting, row->entries,
-               row->seconds, row->cpu_per_entry, row->rms, row->max);
+        printf("%-18s %9.0e %12zu %10.3g %12.3g %10.2e %10.2e\n", bench_method(row), row->setting,
+               row->entries, row->seconds, row->cpu_per_entry, row->rms, row->max);
     }
     printf("\n");
     for (size_t i = 0; i < sizeof equal_errors / sizeof equal_errors[0]; i++)
@@ -135,7 +135,7 @@ lq_status bench_write_svg(const bench_job *job, lq_error *error) {
     };
     char table[LINE], title[2 * LINE], machine[LINE], ratio[LINE];
     lq_origin_describe(job->kind, &job->options.settings, table, sizeof table);
-    describe_machine(job, machine);
+    bench_describe_machine(job->threads, machine, sizeof machine);
     snprintf(title, sizeof title, "Speed against error: %s", table);
     lq_plot_span span = {.y = 1e-4, .label = ratio};
     span.x_from = bench_solver_cost(job, span.y);
