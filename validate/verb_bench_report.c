@@ -5,9 +5,9 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/verb.h"
+#include "tables/origin.h"
 #include "tables/output.h"
-#include "validate/origin.h"
-#include "validate/plot.h"
+#include "tables/plot.h"
 
 #include <errno.h>
 #include <math.h>
@@ -97,23 +97,21 @@ static lq_status write_charts(bench_page *page, lq_error *error) {
     return status;
 }
 
-/* Largest error against bytes, one series a table and scheme. */
-static lq_status write_compression_chart(const bench_page *page, lq_error *error) {
-    enum { POINTS = 16 };
-    lq_series series[LQ_PLOT_MAX_SERIES];
-    double bytes[LQ_PLOT_MAX_SERIES][POINTS], worst[LQ_PLOT_MAX_SERIES][POINTS];
-    char names[LQ_PLOT_MAX_SERIES][64], path[PATH_SIZE];
+/* Largest error against bytes of the table in rows `from` and on, one series a scheme; where its rows end. */
+static lq_status write_compression_chart(const bench_page *page, size_t from, size_t *end, lq_error *error) {
+    enum { SCHEMES = 2, POINTS = 16 };
+    double bytes[SCHEMES][POINTS], worst[SCHEMES][POINTS];
+    lq_series series[SCHEMES];
+    char path[PATH_SIZE], title[NAME];
+    const char *kind = page->compressions[from].kind;
     size_t count = 0;
-    int hue = -1;
-    for (size_t i = 0; i < page->compression_count; i++) {
-        const bench_compression *c = &page->compressions[i], *before = i ? c - 1 : NULL;
-        const bool other_kind = !before || strcmp(before->kind, c->kind) != 0;
-        hue += other_kind;
-        if (other_kind || strcmp(before->scheme, c->scheme) != 0) {
-            if (count == LQ_PLOT_MAX_SERIES) break;
-            snprintf(names[count], sizeof names[count], "%s, %s", c->kind, c->scheme);
-            series[count] = (lq_series){
-                names[count], 0, bytes[count], worst[count], NULL, hue % LQ_PLOT_HUES, c->scheme[0] == 's'};
+    for (*end = from; *end < page->compression_count && strcmp(page->compressions[*end].kind, kind) == 0;
+         ++*end) {
+        const bench_compression *c = &page->compressions[*end];
+        if (count == 0 || strcmp(series[count - 1].name, c->scheme) != 0) {
+            if (count == SCHEMES) continue;
+            series[count] =
+                (lq_series){c->scheme, 0, bytes[count], worst[count], NULL, (int)count, c->scheme[0] == 's'};
             count++;
         }
         lq_series *s = &series[count - 1];
@@ -121,14 +119,22 @@ static lq_status write_compression_chart(const bench_page *page, lq_error *error
         bytes[count - 1][s->count] = (double)c->bytes;
         worst[count - 1][s->count++] = c->max;
     }
-    const lq_plot plot = {.title = "Bytes against error of compressions",
+    snprintf(title, sizeof title, "Bytes against error: %s compressed", kind);
+    const lq_plot plot = {.title = title,
                           .subtitle = page->machine,
                           .x = {"bytes", true},
                           .y = {"largest error as a GPU looks it up", true},
                           .series = series,
                           .series_count = count};
-    snprintf(path, sizeof path, "%s/compressions.svg", page->folder);
+    snprintf(path, sizeof path, "%s/%s-compressed.svg", page->folder, kind);
     return lq_plot_write(&plot, path, error);
+}
+
+static lq_status write_compression_charts(const bench_page *page, lq_error *error) {
+    lq_status status = LQ_OK;
+    for (size_t from = 0, end; status == LQ_OK && from < page->compression_count; from = end)
+        status = write_compression_chart(page, from, &end, error);
+    return status;
 }
 
 static const char head[] =
@@ -193,14 +199,22 @@ static lq_status write_job(const bench_job *job, lq_output *out, lq_error *error
 }
 
 static lq_status write_compressions(const bench_page *page, lq_output *out, lq_error *error) {
-    lq_status status = lq_output_print(
-        out, error,
-        "<h2 id=\"compressions\">Compressions</h2>\n<p>Errors as a GPU looks the textures up, against the "
-        "table they "
-        "were made from; the full size is that of the table in half.</p>\n<p><img src=\"compressions.svg\" "
-        "alt=\"bytes against "
-        "error\"></p>\n<table><tr><th>table</th><th>scheme</th><th>separated</th><th>bytes</th>"
-        "<th>of</th><th>CPU s</th><th>rms</th><th>p99</th><th>largest</th></tr>\n");
+    lq_status status =
+        lq_output_print(out, error,
+                        "<h2 id=\"compressions\">Compressions</h2>\n<p>Errors as a GPU looks the textures "
+                        "up, against the table "
+                        "they were made from; the full size is that of the table in half.</p>\n");
+    for (size_t i = 0; status == LQ_OK && i < page->compression_count; i++) {
+        const char *kind = page->compressions[i].kind;
+        if (i == 0 || strcmp(page->compressions[i - 1].kind, kind) != 0)
+            status = lq_output_print(
+                out, error, "<p><img src=\"%s-compressed.svg\" alt=\"bytes against error of %s\"></p>\n",
+                kind, kind);
+    }
+    if (status == LQ_OK)
+        status = lq_output_print(out, error,
+                                 "<table><tr><th>table</th><th>scheme</th><th>separated</th><th>bytes</th>"
+                                 "<th>of</th><th>CPU s</th><th>rms</th><th>p99</th><th>largest</th></tr>\n");
     for (size_t i = 0; status == LQ_OK && i < page->compression_count; i++) {
         const bench_compression *c = &page->compressions[i];
         status = lq_output_print(out, error,
@@ -274,7 +288,7 @@ int bench_report(const char *folder, const bench_job *like) {
         list_jobs(page, like);
         lq_status status = measure(page, like, &error);
         if (status == LQ_OK) status = write_charts(page, &error);
-        if (status == LQ_OK && page->compression_count > 0) status = write_compression_chart(page, &error);
+        if (status == LQ_OK) status = write_compression_charts(page, &error);
         if (status == LQ_OK) status = write_page(page, &error);
         code = status == LQ_OK ? judge(page) : cli_fail_status(status, &error);
         if (status == LQ_OK) printf("%s/index.html\n", folder);
