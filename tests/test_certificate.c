@@ -6,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "microfacet/fresnel.h"
 #include "tests/uniform.h"
 #include "validate/certificate_checks.h"
 #include "validate/certificate_confidence.h"
+#include "validate/certificate_pack.h"
 
 /* ------------------------------------------------------------------------------- confidence */
 
@@ -181,8 +183,9 @@ static lq_table *loss_table(size_t size) {
 static const lq_check *check_named(const lq_certified *certified, const char *name) {
     for (int i = 0; i < certified->check_count; i++)
         if (strcmp(certified->checks[i].name, name) == 0) return &certified->checks[i];
+    static const lq_check none;
     fail_msg("no check '%s'", name);
-    return NULL;
+    return &none;
 }
 
 static void certify(lq_certified *certified, lq_table *table, size_t points) {
@@ -201,7 +204,7 @@ static void certify(lq_certified *certified, lq_table *table, size_t points) {
 static void test_one_entry_of_many_is_caught(void **state) {
     (void)state;
     lq_certified *certified = malloc(sizeof *certified);
-    certify(certified, loss_table(33), 2000);
+    certify(certified, loss_table(33), 500);
     assert_null(lq_certified_failure(certified));
     const double before = check_named(certified, "stored entries")->value;
     assert_true(before <= 1e-5);
@@ -214,17 +217,18 @@ static void test_one_entry_of_many_is_caught(void **state) {
         float *entry = &table->channels[0][places[i]], kept = *entry;
         if (kept < 0.01f) fail_msg("entry %zu is too small to tell", places[i]);
         *entry = 1.02f * kept;
-        certify(certified, table, 2000);
+        certify(certified, table, 500);
         const lq_check *stored = check_named(certified, "stored entries");
         if (stored->outcome != LQ_FAILED)
-            fail_msg("entry %zu of value %g: %.3g; %s", places[i], (double)kept, stored->value, stored->detail);
+            fail_msg("entry %zu of value %g: %.3g; %s", places[i], (double)kept, stored->value,
+                     stored->detail);
         assert_near(stored->value, 0.02 * (double)kept, 1e-5);
         *entry = kept;
         certified->subject.table = NULL;
         lq_certified_free(certified);
     }
     table->channels[0][77] = NAN;
-    certify(certified, table, 2000);
+    certify(certified, table, 500);
     assert_int_equal(check_named(certified, "range stored")->outcome, LQ_FAILED);
     lq_certified_free(certified);
     free(certified);
@@ -238,13 +242,108 @@ static void test_physics_is_checked(void **state) {
     for (size_t i = 0; i < 17; i++)
         for (size_t k = 4; k < 7; k++)
             for (size_t m = 2; m < 9; m++) table->channels[0][m + 17 * (i + 17 * k)] = 0.0f;
-    certify(certified, table, 4000);
+    certify(certified, table, 2000);
     assert_int_equal(check_named(certified, "false zeros")->outcome, LQ_FAILED);
     assert_int_equal(check_named(certified, "monotony")->outcome, LQ_FAILED);
     assert_int_equal(check_named(certified, "banding")->outcome, LQ_FAILED);
     assert_int_equal(check_named(certified, "budget max")->outcome, LQ_FAILED);
     lq_certified_free(certified);
     free(certified);
+}
+
+/* A table made with separable masking that says it is correlated. */
+static void test_wrong_masking_is_named(void **state) {
+    (void)state;
+    const lq_kind *kind = lq_kind_find("albedo", NULL);
+    lq_settings settings = lq_settings_default();
+    lq_certified *certified = calloc(1, sizeof *certified);
+    lq_certify_options options = {.points = 1000, .seed = 1};
+    lq_axis axes[2];
+    settings.masking = LQ_SEPARABLE;
+    assert_int_equal(lq_axis_parse(&axes[0], "mu", "0.05:1:33", NULL), LQ_OK);
+    assert_int_equal(lq_axis_parse(&axes[1], "alpha", "0.1:1:17", NULL), LQ_OK);
+    assert_int_equal(lq_precompute(kind, &settings, axes, NULL, &certified->subject.table, NULL), LQ_OK);
+    for (int a = 0; a < 2; a++) lq_axis_free(&axes[a]);
+    assert_int_equal(lq_table_set_fact(certified->subject.table, "masking", "correlated", NULL), LQ_OK);
+    assert_int_equal(lq_origin_of(certified->subject.table, &certified->subject.origin, NULL), LQ_OK);
+    assert_int_equal(lq_budget_parse(&options.rule.budget, "max=1e-2", NULL), LQ_OK);
+    assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
+    assert_int_equal(check_named(certified, "budget max")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(certified, "stored entries")->outcome, LQ_FAILED);
+    const lq_check *named = check_named(certified, "looks like");
+    assert_non_null(strstr(named->detail, "separable masking"));
+    assert_true(named->value < 1e-5);
+    lq_certified_free(certified);
+    free(certified);
+}
+
+/* ------------------------------------------------------------------------------------ folders */
+
+/* A smooth coating: R = F(mu, eta), T = 1 - F, and below it by reciprocity; `bad` times the transmission. */
+typedef struct fake {
+    int which;       /* R01, T01, T10, R10 */
+    double bad, out; /* out: T10 at eta = 1.5 */
+} fake;
+
+static double mean_reflectance(double eta) {
+    double sum = 0.0;
+    for (int i = 0; i < 2000; i++) {
+        const double mu = (i + 0.5) / 2000.0;
+        sum += 2.0 * mu * lq_fresnel_dielectric(mu, eta, NULL) / 2000.0;
+    }
+    return sum;
+}
+
+static double fake_decode(const void *subject, int channel, const double *point) {
+    const fake *f = subject;
+    (void)channel;
+    if (f->which < 2) {
+        const double reflected = lq_fresnel_dielectric(point[0], point[2], NULL);
+        return f->which == 0 ? reflected : f->bad * (1.0 - reflected);
+    }
+    return f->which == 2 ? f->bad * f->out : 1.0 - f->out;
+}
+
+static void pack_of_fakes(lq_certified *list, const fake *fakes) {
+    const char *const kinds[] = {"fgd-dielectric", "transmission", "diffuse-transmission",
+                                 "diffuse-reflection"};
+    memset(list, 0, 4 * sizeof *list);
+    for (int i = 0; i < 4; i++) {
+        lq_certify_request *r = &list[i].certificate.request;
+        r->kind = lq_kind_find(kinds[i], NULL);
+        r->settings = lq_settings_default();
+        r->stages[0] = (lq_stage){"fake", "fake", fake_decode, &fakes[i]};
+        r->stage_count = 1;
+        list[i].budget.bound[LQ_NORM_MAX] = 1e-3;
+        for (int a = 0; a < r->kind->axis_count; a++) {
+            const bool eta = strcmp(r->kind->axes[a].name, "eta") == 0;
+            r->domain.min[a] = eta ? 1.5 : 0.0;
+            r->domain.max[a] = eta ? 1.5 : 1.0;
+        }
+    }
+    lq_check_pack(list, 4);
+}
+
+/* Exact identities hold; 3 % more transmission breaks all that have it in them. */
+static void test_tables_of_a_folder_agree(void **state) {
+    (void)state;
+    lq_certified *list = malloc(4 * sizeof *list);
+    const double out = (1.0 - mean_reflectance(1.5)) / (1.5 * 1.5);
+    fake fakes[4] = {{0, 1.0, out}, {1, 1.0, out}, {2, 1.0, out}, {3, 1.0, out}};
+    pack_of_fakes(list, fakes);
+    for (int i = 0; i < 4; i++) assert_null(lq_certified_failure(&list[i]));
+    assert_true(check_named(&list[1], "R + T")->value <= 1e-15);
+    assert_true(check_named(&list[3], "furnace")->value < 1e-6);
+    assert_true(check_named(&list[2], "reciprocity")->value < 1e-4);
+    assert_true(check_named(&list[3], "reciprocity")->value < 1e-4);
+    fakes[1].bad = 1.03;
+    pack_of_fakes(list, fakes);
+    assert_near(check_named(&list[1], "R + T")->value, 0.03 * 0.96, 1e-4);
+    assert_int_equal(check_named(&list[1], "R + T")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(&list[3], "furnace")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(&list[2], "reciprocity")->outcome, LQ_FAILED);
+    assert_int_equal(check_named(&list[3], "reciprocity")->outcome, LQ_PASSED);
+    free(list);
 }
 
 /* ---------------------------------------------------------------------------------- budgets */
@@ -283,6 +382,8 @@ int main(void) {
         cmocka_unit_test(test_threads_change_no_bit),
         cmocka_unit_test(test_one_entry_of_many_is_caught),
         cmocka_unit_test(test_physics_is_checked),
+        cmocka_unit_test(test_wrong_masking_is_named),
+        cmocka_unit_test(test_tables_of_a_folder_agree),
         cmocka_unit_test(test_budgets_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -98,6 +98,20 @@ says 'alpha 0.2 to 1'
 sed 's/tir-loss/tir-pass/' budget.json >other.json
 run 2 validate loss.exr --budget other.json --points 5000
 
+# a folder: every table of it; a factor file needs no option
+mkdir tables
+cp loss.exr factors.exr tables/
+run 2 validate tables --budget budget.json --points 2000 --junit tables.xml
+says '^factors.exr: tir-pass'
+says '^loss.exr: tir-loss'
+[ "$(grep -c '<testsuite ' tables.xml)" -eq 2 ] || fail "JUnit of a folder: $(cat tables.xml)"
+run 0 validate factors.exr --points 500
+says 'single texels'
+mkdir empty
+refused "no table in the folder 'empty'" validate empty
+head -c 3000 loss.exr >tables/cut.exr
+refused 'tables/cut.exr' validate tables --points 500
+
 echo '{"maximum": 1}' >key.json
 refused "key.json: unknown key 'maximum'; accepted: max, p99" validate loss.exr --budget key.json
 echo '{"max": }' >syntax.json

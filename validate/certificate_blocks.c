@@ -41,7 +41,7 @@ static void choose_sizes(lq_block_plan *plan, size_t points) {
         shares[a] = !plan->solves[a] && free_axis && plan->size[a] == 1;
         shared += shares[a];
     }
-    const double most = is_dielectric(kind) && shared > 1 ? POINTS_OF_SOLVE : POINTS_OF_SLICE;
+    const double most = is_dielectric(kind) ? POINTS_OF_SOLVE : POINTS_OF_SLICE;
     plan->per_block = 1;
     for (int a = 0; a < kind->axis_count; a++) {
         if (shares[a]) plan->size[a] = (size_t)round(pow(most / parts, 1.0 / shared));

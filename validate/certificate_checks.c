@@ -104,7 +104,7 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
     if (status == LQ_OK) status = lq_check_texels(certified, error);
     if (status == LQ_OK) status = lq_check_stored(certified, error);
     if (status == LQ_OK) lq_check_sampling(certified);
-    return status;
+    return status == LQ_OK ? lq_check_definition(certified, error) : status;
 }
 
 void lq_certified_free(lq_certified *certified) {

@@ -53,7 +53,7 @@ typedef struct lq_certify_options {
     int threads;
 } lq_certify_options;
 
-enum { LQ_CERTIFICATE_POINTS = 100000, LQ_CERTIFICATE_SOLVES = 2048, LQ_CERTIFICATE_STARTS = 4 };
+enum { LQ_CERTIFICATE_POINTS = 100000, LQ_CERTIFICATE_SOLVES = 1024, LQ_CERTIFICATE_STARTS = 4 };
 
 /* Sample, search and judge the subject that is in `certified`. */
 lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *options,
@@ -64,7 +64,9 @@ void lq_certified_free(lq_certified *certified);
 void lq_check_budget(lq_certified *certified);
 void lq_check_physics(lq_certified *certified);
 lq_status lq_check_stored(lq_certified *certified, lq_error *error);
+/* Only where something failed: what it looks like. */
 void lq_check_sampling(lq_certified *certified);
+lq_status lq_check_definition(lq_certified *certified, lq_error *error);
 lq_status lq_check_texels(lq_certified *certified, lq_error *error);
 lq_status lq_check_bands(lq_certified *certified, lq_error *error);
 

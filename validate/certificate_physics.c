@@ -136,7 +136,7 @@ static size_t cells_along(const lq_subject *s, int axis) {
 }
 
 /* An axis that blocks have few values of gets few triples. */
-enum { BANDS = 12, TRIPLES = 8, FEW = 4, FEW_TRIPLES = 2, STREAM_BANDS = 0x62616e64 };
+enum { BANDS = 6, TRIPLES = 8, FEW = 4, FEW_TRIPLES = 2, STREAM_BANDS = 0x62616e64 };
 
 /* Second differences of the error at one place. */
 typedef struct band {

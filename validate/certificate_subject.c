@@ -76,6 +76,8 @@ lq_status lq_subject_read(lq_subject *s, const char *path, lq_error *error) {
     } else {
         status = lq_origin_of(s->table, &s->origin, &cause);
     }
+    /* Once, not at every block: an NDF may tabulate. */
+    if (status == LQ_OK) status = lq_ndf_open(&s->origin.settings.opened, s->origin.settings.ndf, &cause);
     return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", path, cause.text);
 }
 
@@ -92,6 +94,7 @@ lq_status lq_subject_add_table(lq_subject *s, const char *path, lq_error *error)
 }
 
 void lq_subject_free(lq_subject *s) {
+    lq_ndf_close(s->origin.settings.opened);
     lq_table_free(s->table);
     lq_factored_free(s->factored);
     lq_factored_free(s->unrounded);

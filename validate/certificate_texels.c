@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HOLDS = 6, LOOKED_AT = 16, STREAM_HOLDS = 0x686f6c64 };
+enum { HOLDS = 6, LOOKED_AT = 10, STREAM_HOLDS = 0x686f6c64 };
 
 /* How many times the median of those looked at, and at least this much: twice what half precision leaves
  * near 1. */

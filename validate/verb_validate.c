@@ -56,7 +56,7 @@ static void print_notes(FILE *out) {
         "A certificate (--certificate, a budget by norm, --on, --junit, --report) takes 100000 exact values\n"
         "anywhere between the nodes, uniform over the axes, searches for the worst point, states the\n"
         "confidence of p99 and of the largest error, and checks physics; FILE is a table or the factors\n"
-        "of one. docs/certificates.md describes it and the budget file.\n");
+        "of one, DIR a folder of them. docs/certificates.md describes it and the budget file.\n");
 }
 
 static int run(int argc, char **argv);
@@ -64,13 +64,14 @@ static int run(int argc, char **argv);
 const cli_verb cli_verb_validate = {
     .name = "validate",
     .summary = "check a stored table against the exact solver and random walks",
-    .usage = "FILE [options]\nhard-cases [--ndf NDF] [--format text|json]",
+    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]",
     .options = options,
     .notes = print_notes,
     .examples = "lacquer validate fgd.exr\n"
                 "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
                 "lacquer validate fgd.exr --budget 1e-3 --format json\n"
                 "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
+                "lacquer validate tables/ --budget budget.json --report page --junit tables.xml\n"
                 "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate theirs.npy --axes theirs.json\n"
@@ -258,11 +259,15 @@ static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
-    if (job.request.certify.wanted) return certify(&job.request);
+    if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
     if (job.request.other || job.request.layout >= 0 || job.request.axes || job.request.diagnose)
         return validate_against(&job.request);
     lq_error error = {""};
     lq_status status = load(&job, &error);
+    if (job.table && lq_table_fact(job.table, "factors")) {
+        validate_free(&job);
+        return certify(&job.request);
+    }
     if (status == LQ_OK) {
         cli_progress bar;
         cli_progress_begin(&bar, job.origin.kind->id);

@@ -1,14 +1,18 @@
-/* verb_validate_certify.c - `lacquer validate` with a certificate, of one table or factor file. */
+/* verb_validate_certify.c - `lacquer validate` with a certificate, of a table, a factor file or a folder of
+ * them. */
 #include "validate/verb_validate_certify.h"
 
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "validate/certificate_pack.h"
 #include "validate/report.h"
 
+#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool accept(lq_status status, const lq_error *error) {
@@ -56,15 +60,15 @@ static lq_rule rule_for(const certify_request *request, const char *name, const 
     return rule;
 }
 
-static lq_status make(const certify_request *request, lq_certified *certified, lq_error *error) {
-    lq_status status = lq_subject_read(&certified->subject, request->path, error);
+static lq_status make(const certify_request *request, const char *path, lq_certified *certified,
+                      lq_error *error) {
+    lq_status status = lq_subject_read(&certified->subject, path, error);
     if (status == LQ_OK && request->table)
         status = certified->subject.factored
                      ? lq_subject_add_table(&certified->subject, request->table, error)
                      : LQ_BAD_INPUT;
     if (status == LQ_BAD_INPUT && !error->text[0])
-        snprintf(error->text, sizeof error->text, "--table needs a factor file; '%.200s' is a table",
-                 request->path);
+        snprintf(error->text, sizeof error->text, "--table needs a factor file; '%.200s' is a table", path);
     if (status != LQ_OK) return status;
     const char *kind = certified->subject.origin.kind->id;
     const lq_certify_options options = {.rule = rule_for(request, certified->subject.name, kind),
@@ -100,13 +104,66 @@ static int report(const certify_request *request, const lq_certified *list, size
     return failed ? CLI_EXCEEDED : CLI_DONE;
 }
 
+/* ======================================================================================
+ *                                        Folders
+ * ====================================================================================== */
+
+static int is_archive(const struct dirent *entry) {
+    const size_t length = strlen(entry->d_name);
+    return length > 4 && strcmp(entry->d_name + length - 4, ".exr") == 0 && entry->d_name[0] != '.';
+}
+
+static bool is_folder(const char *path) {
+    struct stat facts;
+    return stat(path, &facts) == 0 && S_ISDIR(facts.st_mode);
+}
+
+/* Every table of the folder, and what they owe each other. */
+static lq_status make_folder(const certify_request *request, lq_certified **list, size_t *count,
+                             lq_error *error) {
+    struct dirent **entries;
+    const int found = scandir(request->path, &entries, is_archive, alphasort);
+    lq_status status = LQ_OK;
+    *list = found > 0 ? calloc((size_t)found, sizeof **list) : NULL;
+    if (!*list) {
+        snprintf(error->text, sizeof error->text,
+                 "no table in the folder '%.300s'; accepted: EXR files of "
+                 "lacquer precompute and lacquer pca",
+                 request->path);
+        status = LQ_BAD_INPUT;
+    }
+    for (int i = 0; i < found; i++) {
+        char path[4096];
+        snprintf(path, sizeof path, "%s/%s", request->path, entries[i]->d_name);
+        if (status == LQ_OK) status = make(request, path, &(*list)[(*count)++], error);
+        free(entries[i]);
+    }
+    if (found >= 0) free(entries);
+    if (status == LQ_OK) lq_check_pack(*list, *count);
+    return status;
+}
+
+bool certify_takes_alone(const char *path) {
+    return is_folder(path);
+}
+
 int validate_certify(const certify_request *request) {
-    lq_certified *certified = calloc(1, sizeof *certified);
-    if (!certified) return cli_fail("out of memory");
+    lq_certified *list = NULL;
+    size_t count = 0;
     lq_error error = {""};
-    const lq_status status = make(request, certified, &error);
-    const int code = status == LQ_OK ? report(request, certified, 1) : cli_fail_status(status, &error);
-    lq_certified_free(certified);
-    free(certified);
+    lq_status status;
+    if (is_folder(request->path) && request->table) {
+        return cli_fail("--table needs a factor file; '%s' is a folder", request->path);
+    } else if (is_folder(request->path)) {
+        status = make_folder(request, &list, &count, &error);
+    } else {
+        list = calloc(1, sizeof *list);
+        if (!list) return cli_fail("out of memory");
+        count = 1;
+        status = make(request, request->path, list, &error);
+    }
+    const int code = status == LQ_OK ? report(request, list, count) : cli_fail_status(status, &error);
+    for (size_t i = 0; i < count; i++) lq_certified_free(&list[i]);
+    free(list);
     return code;
 }

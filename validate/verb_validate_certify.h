@@ -42,6 +42,9 @@ typedef struct certify_request {
 bool certify_take(certify_request *request, int id, const char *value);
 bool certify_take_budget(certify_request *request, const char *value);
 
+/* Is this something that only a certificate can be made of? A folder. */
+bool certify_takes_alone(const char *path);
+
 /* The whole of it; returns the exit code. */
 int validate_certify(const certify_request *request);
 
