@@ -20,7 +20,7 @@
 typedef double function(const double *x);
 
 static lq_table *tabulate(function *f, const char *const *axes, int count) {
-    lq_axis made[LQ_MAX_AXES];
+    lq_axis made[LQ_MAX_AXES] = {0};
     lq_table *table;
     const char *channel = "value";
     for (int a = 0; a < count; a++) {

@@ -39,28 +39,28 @@ run 0 precompute transmission --axis mu=0.1:1:16:sqrt --axis alpha=0.1:1:8 --axi
     --axis tau=0.05:1:8 -o t01.exr
 
 # ------------------------------------------------------------------------------ both schemes
-run 0 pca t01.exr --separate tau:2,alpha:4 --scheme sequential --random 4 -o d22.exr
+run 0 pca t01.exr --separate tau:2,alpha:4 --scheme sequential --random 2 -o d22.exr
 grep -q 'sequential tau:2|alpha:4' out || fail "the report does not name the scheme: $(cat out)"
 below 0.06
-run 0 pca t01.exr --separate tau,eta --value beer --bases 3,4 --random 4 -o joint.exr
+run 0 pca t01.exr --separate tau,eta --value beer --bases 3,4 --sweeps 8 --random 2 -o joint.exr
 grep -q 'against the solver at random points' out || fail "errors are not off the grid"
 below 0.01
-run 0 pca t01.exr --separate tau,eta --value beer --bases 3,4 --random 4 --threads 1 -o one.exr
+run 0 pca t01.exr --separate tau,eta --value beer --bases 3,4 --sweeps 8 --random 2 --threads 1 -o one.exr
 cmp -s joint.exr one.exr || fail "one thread gives other bits than all cores"
 run 0 info joint.exr
 grep -q 'pca-max' out || fail "the file does not state its error"
 
 # ------------------------------------------------------------------------------ searches
-run 0 pca t10.exr --budget 5e-3 --random 4 --csv tries.csv --svg tries.svg -o t10-factors.exr
+run 0 pca t10.exr --budget 5e-3 --random 3 --csv tries.csv --svg tries.svg -o t10-factors.exr
 below 5e-3
 grep -q '^<svg' tries.svg || fail "no chart"
 head -1 tries.csv | grep -q '^piece,factors,bytes,points,rms,p99,max,worst_eta' || fail "CSV: $(head -1 tries.csv)"
 awk -F, 'NR > 1 && NF != 11 {exit 1}' tries.csv || fail "CSV lines of another length"
 bytes=$(awk -F, '$NF == 1 {print $3}' tries.csv | tail -1)
-run 0 pca t10.exr --bytes 600 --random 4 -o small.exr
+run 0 pca t10.exr --bytes 600 --random 3 -o small.exr
 awk '/: [0-9]+ bytes/ {if ($2 > 600) exit 1}' out || fail "more than 600 bytes: $(tail -1 out)"
 [ "$bytes" -lt 2400 ] || fail "the budget took $bytes bytes"
-run 2 pca t10.exr --budget 1e-8 --random 4 -o best.exr
+run 2 pca t10.exr --budget 1e-8 --random 3 -o best.exr
 [ -s best.exr ] || fail "exit 2 without the best there was"
 
 # ------------------------------------------------------------------------------ refusals
