@@ -58,6 +58,7 @@ extern const cli_verb cli_verb_precompute;
 extern const cli_verb cli_verb_validate;
 extern const cli_verb cli_verb_pca;
 extern const cli_verb cli_verb_info;
+extern const cli_verb cli_verb_fit;
 extern const cli_verb cli_verb_bench;
 
 /* All verbs in the order help shows them; NULL beyond the last. */

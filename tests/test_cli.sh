@@ -46,7 +46,7 @@ small=(--axis mu=0:1:5 --axis alpha=0:1:4 --axis n=0.2:2:3 --axis kappa=1:4:3)
 run 0 --version
 grep -qE '^lacquer [0-9]+\.[0-9]+\.[0-9]+$' files/out || fail "--version: $(cat files/out)"
 run 0 --help
-for verb in list eval precompute validate info bench; do
+for verb in list eval precompute fit validate info bench; do
     run 0 --help
     grep -q "^  $verb " files/out || fail "--help does not show $verb"
     run 0 "$verb" --help
@@ -63,9 +63,9 @@ done
 
 # --------------------------------------------------------------------------------- bad words
 refused 'no verb; known: list, eval'
-refused "unknown verb 'x'; known: list, eval, precompute, pca, validate, info, bench" x
+refused "unknown verb 'x'; known: list, eval, precompute, pca, validate, info, fit, bench" x
 refused "unknown option '--x'" --x
-for verb in list eval precompute validate info bench; do
+for verb in list eval precompute fit validate info bench; do
     refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense
 done
 refused 'no arguments' list fgd

@@ -30,6 +30,8 @@ allowed_rooms() { # FILE ROOM
         printf ' tables' ;; esac
     # the verb fills pca's callback for exact values
     case $1 in pca/verb_*) printf ' precompute' ;; esac
+    # charts and random bounces
+    case $1 in fit/verb_*) printf ' validate' ;; esac
 }
 
 check() { # FILE LINE INCLUDED
