@@ -57,6 +57,7 @@ extern const cli_verb cli_verb_eval;
 extern const cli_verb cli_verb_precompute;
 extern const cli_verb cli_verb_validate;
 extern const cli_verb cli_verb_pca;
+extern const cli_verb cli_verb_pack;
 extern const cli_verb cli_verb_info;
 extern const cli_verb cli_verb_fit;
 extern const cli_verb cli_verb_bench;

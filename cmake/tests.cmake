@@ -29,6 +29,13 @@ foreach(source IN LISTS test_programs)
   lacquer_test_properties(${name})
 endforeach()
 
+# A software GPU for the textures and shaders of a pack; without it that test is a skip.
+pkg_check_modules(EGL IMPORTED_TARGET egl glesv2)
+if(EGL_FOUND)
+  target_link_libraries(test_pack_gl PRIVATE PkgConfig::EGL)
+  target_compile_definitions(test_pack_gl PRIVATE LACQUER_EGL)
+endif()
+
 file(GLOB test_scripts CONFIGURE_DEPENDS "tests/test_*.sh")
 foreach(source IN LISTS test_scripts)
   get_filename_component(name ${source} NAME_WE)

@@ -63,7 +63,7 @@ done
 
 # --------------------------------------------------------------------------------- bad words
 refused 'no verb; known: list, eval'
-refused "unknown verb 'x'; known: list, eval, precompute, pca, validate, info, fit, bench" x
+refused "unknown verb 'x'; known: list, eval, precompute, pca, fit, validate, pack, info, bench" x
 refused "unknown option '--x'" --x
 for verb in list eval precompute fit validate info bench; do
     refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense

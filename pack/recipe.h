@@ -1,0 +1,33 @@
+/* recipe.h - a recipe: which tables, how fine, in which files, and the error they may have. docs/packs.md */
+#ifndef LACQUER_PACK_RECIPE_H
+#define LACQUER_PACK_RECIPE_H
+
+#include "pack/image.h"
+
+enum { LQ_RECIPE_TABLES = 32 };
+
+typedef struct lq_recipe_table {
+    const lq_kind *kind;
+    char name[LQ_NAME_SIZE];   /* of its files and functions; the kind's id unless said */
+    lq_axis axes[LQ_MAX_AXES]; /* one per axis of the kind */
+    lq_settings settings;      /* ndf points into the recipe */
+    double p99, max;           /* budget; INFINITY: none */
+    int layouts[LQ_LAYOUTS];   /* published binaries to write too */
+    int line;                  /* in the recipe's file */
+} lq_recipe_table;
+
+typedef struct lq_recipe {
+    char name[LQ_NAME_SIZE];
+    char *ndf;
+    bool containers[LQ_CONTAINERS];
+    size_t points;    /* where the error is measured, per table */
+    size_t max_bytes; /* of all textures; 0: no bound */
+    size_t count;
+    lq_recipe_table tables[LQ_RECIPE_TABLES];
+} lq_recipe;
+
+/* Messages are "FILE:LINE: what; accepted: ...". */
+lq_status lq_recipe_read(lq_recipe *recipe, const char *path, lq_error *error);
+void lq_recipe_free(lq_recipe *recipe);
+
+#endif

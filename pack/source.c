@@ -1,0 +1,168 @@
+/* source.c - decode functions in GLSL, HLSL and C.
+ *
+ * Each reads its texture at u' = u (1 - 1/N) + 0.5/N per axis, where u in [0,1] is the axis' map of the
+ * argument and N its texels: the end points of an axis sit on texel centres. */
+#include "pack/source.h"
+
+#include "tables/output.h"
+#include "tables/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char *const files[LQ_LANGUAGES] = {"decode.glsl", "decode.hlsl", "decode.h"};
+
+const char *lq_source_file(lq_language language) {
+    return files[language];
+}
+
+static const char glsl_head[] =
+    "/* Bind each texture with linear filtering, clamp to edge, no mip levels. */\n"
+    "#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n"
+    "/* u in [0,1] to where a texture of n texels has it: 0 and 1 are the centres of the outer texels. */\n"
+    "float lacquer_texel(float u, float n) { return u * (1.0 - 1.0 / n) + 0.5 / n; }\n";
+
+static const char hlsl_head[] =
+    "/* The sampler: linear filtering, clamp, no mip levels. */\n"
+    "#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n"
+    "/* u in [0,1] to where a texture of n texels has it: 0 and 1 are the centres of the outer texels. */\n"
+    "float lacquer_texel(float u, float n) { return u * (1.0 - 1.0 / n) + 0.5 / n; }\n";
+
+static const char c_head[] =
+    "/* `table` is the array of the pack's C header: channels fastest, then x, y, z. */\n"
+    "#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n#include <math.h>\n\n"
+    "static inline float lacquer_clamp01(float x) { return x < 0.0f ? 0.0f : x > 1.0f ? 1.0f : x; }\n\n"
+    "/* Linear filtering at u in [0,1] along each axis; size[a] texels, node 0 at u = 0, the last at u = 1. "
+    "*/\n"
+    "static inline void lacquer_filter(const float *table, int axes, const int *size, const float *u,\n"
+    "                                  int channels, int count, float *value) {\n"
+    "    int texel = 0, stride[3] = {1, 1, 1};\n"
+    "    float weight[3] = {0.0f, 0.0f, 0.0f};\n"
+    "    for (int a = 0; a < axes; a++) {\n"
+    "        float position = u[a] * (float)(size[a] - 1);\n"
+    "        int below = (int)position < size[a] - 2 ? (int)position : size[a] - 2;\n"
+    "        stride[a] = a > 0 ? stride[a - 1] * size[a - 1] : 1;\n"
+    "        weight[a] = position - (float)below;\n"
+    "        texel += stride[a] * below;\n"
+    "    }\n"
+    "    for (int c = 0; c < count; c++) value[c] = 0.0f;\n"
+    "    for (int corner = 0; corner < 1 << axes; corner++) {\n"
+    "        float w = 1.0f;\n"
+    "        int at = texel;\n"
+    "        for (int a = 0; a < axes; a++) {\n"
+    "            int above = corner >> a & 1;\n"
+    "            w *= above ? weight[a] : 1.0f - weight[a];\n"
+    "            at += above ? stride[a] : 0;\n"
+    "        }\n"
+    "        for (int c = 0; c < count; c++) value[c] += w * table[at * channels + c];\n"
+    "    }\n"
+    "}\n";
+
+/* Shortest text that reads back as the same float, with a decimal point: shaders need one. */
+static void print_number(FILE *out, double value, lq_language language) {
+    char text[48];
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtof(text, NULL) == (float)value) break;
+    }
+    bool whole = true;
+    for (const char *c = text; *c; c++) whole = whole && *c != '.' && *c != 'e';
+    fprintf(out, "%s%s%s", text, whole ? ".0" : "", language == LQ_C ? "f" : "");
+}
+
+/* ((x - min) / range) clamped, through the inverse of the axis' map. */
+static void print_coordinate(FILE *out, const lq_axis *axis, lq_language language) {
+    static const char *const clamps[] = {"clamp(", "saturate(", "lacquer_clamp01("};
+    static const char *const roots[] = {"sqrt(", "sqrt(", "sqrtf("};
+    static const char *const powers[] = {"pow(", "pow(", "powf("};
+    const bool bent = axis->exponent != 1.0, root = axis->exponent == 2.0;
+    if (bent) fputs(root ? roots[language] : powers[language], out);
+    fprintf(out, "%s", clamps[language]);
+    if (axis->min != 0.0) fprintf(out, "(%s - ", axis->name), print_number(out, axis->min, language);
+    else fprintf(out, "%s", axis->name);
+    if (axis->min != 0.0) fputc(')', out);
+    if (axis->max - axis->min != 1.0) fputs(" / ", out), print_number(out, axis->max - axis->min, language);
+    fputs(language == LQ_GLSL ? ", 0.0, 1.0)" : ")", out);
+    if (bent && !root) fputs(", ", out), print_number(out, 1.0 / axis->exponent, language);
+    if (bent) fputc(')', out);
+}
+
+static void print_comment(FILE *out, const lq_texture *texture, const lq_kind *kind) {
+    fprintf(out, "\n/* %s: %s\n *   %s   [%s]\n *   channels:", texture->name, kind->title, kind->quantity,
+            kind->source);
+    for (int c = 0; c < texture->channel_count; c++) fprintf(out, " %s", texture->channels[c]);
+    for (int a = 0; a < texture->axis_count; a++) {
+        const lq_axis *axis = &texture->axes[a];
+        fprintf(out, "\n *   %c: %s, %s, %g to %g, %zu texels", "xyz"[a], axis -> name,
+                kind -> axes[texture->from[a]].meaning, axis->min, axis->max, axis->size);
+        if (axis->exponent != 1.0) fprintf(out, ", value = min + (max - min) u^%g", axis->exponent);
+    }
+    fputs(" */\n", out);
+}
+
+static const char *vector(int count, lq_language language) {
+    static const char *const glsl[] = {"float", "vec2", "vec3", "vec4"};
+    static const char *const hlsl[] = {"float", "float2", "float3", "float4"};
+    return (language == LQ_GLSL ? glsl : hlsl)[count - 1];
+}
+
+static void print_arguments(FILE *out, const lq_texture *texture) {
+    for (int a = 0; a < texture->axis_count; a++)
+        fprintf(out, "%sfloat %s", a > 0 ? ", " : "", texture->axes[a].name);
+}
+
+static void print_shader(FILE *out, const lq_texture *texture, lq_language language) {
+    static const char swizzles[][5] = {"r", "rg", "rgb", "rgba"};
+    const int dimensions = texture->axis_count > 2 ? 3 : 2;
+    fprintf(out, "%s lacquer_%s(", vector(texture->channel_count, language), texture->name);
+    if (language == LQ_GLSL) fprintf(out, "sampler%dD table, ", dimensions);
+    else fprintf(out, "Texture%dD<float4> table, SamplerState linear_clamp, ", dimensions);
+    print_arguments(out, texture);
+    fputs(")\n{\n", out);
+    for (int a = 0; a < texture->axis_count; a++) {
+        fprintf(out, "    float %c = lacquer_texel(", "uvw"[a]);
+        print_coordinate(out, &texture->axes[a], language);
+        fprintf(out, ", %zu.0);\n", texture->axes[a].size);
+    }
+    fprintf(out,
+            language == LQ_GLSL ? "    return textureLod(table, %s("
+                                : "    return table.SampleLevel(linear_clamp, %s(",
+            vector(dimensions, language));
+    fputs(texture->axis_count == 1 ? "u, 0.5" : texture->axis_count == 2 ? "u, v" : "u, v, w", out);
+    fprintf(out, "), 0.0).%s;\n}\n", swizzles[texture->channel_count - 1]);
+}
+
+static void print_c(FILE *out, const lq_texture *texture) {
+    fprintf(out, "static inline void lacquer_%s(const float *table, ", texture->name);
+    print_arguments(out, texture);
+    fprintf(out, ", float value[%d]) {\n    const int size[] = {", texture->channel_count);
+    for (int a = 0; a < texture->axis_count; a++)
+        fprintf(out, "%s%zu", a > 0 ? ", " : "", texture->axes[a].size);
+    fputs("};\n    const float u[] = {", out);
+    for (int a = 0; a < texture->axis_count; a++) {
+        if (a > 0) fputs(",\n                       ", out);
+        print_coordinate(out, &texture->axes[a], LQ_C);
+    }
+    fprintf(out, "};\n    lacquer_filter(table, %d, size, u, %d, %d, value);\n}\n", texture->axis_count,
+            texture->image.channels, texture->channel_count);
+}
+
+lq_status lq_source_write(lq_language language, const lq_texture *textures, const lq_kind *const *kinds,
+                          size_t count, const char *path, lq_error *error) {
+    static const char *const heads[LQ_LANGUAGES] = {glsl_head, hlsl_head, c_head};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
+    fprintf(out, "/* Decode functions, made by lacquer " LQ_VERSION ". */\n%s", heads[language]);
+    for (size_t i = 0; i < count; i++) {
+        print_comment(out, &textures[i], kinds[i]);
+        if (language == LQ_C) print_c(out, &textures[i]);
+        else print_shader(out, &textures[i], language);
+    }
+    fputs("\n#endif\n", out);
+    lq_status status = fclose(out) == 0 ? lq_output_save(path, text, size, error)
+                                        : lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
+    free(text);
+    return status;
+}

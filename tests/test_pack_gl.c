@@ -1,0 +1,298 @@
+/* A software GPU reads the shipped textures through the shipped GLSL and HLSL. Skipped where there is no EGL.
+ */
+#include "tests/expect.h"
+#include "tests/scratch.h"
+
+#include "pack/measure.h"
+#include "pack/source.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef LACQUER_EGL
+int main(void) {
+    fputs("built without EGL and GLES\n", stderr);
+    return 77;
+}
+#else
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GLES3/gl3.h>
+
+enum { SIDE = 100, POINTS = SIDE * SIDE, EXACT = 200 };
+
+static const char vertex[] = "#version 300 es\nvoid main() {\n"
+                             "    vec2 at[3] = vec2[](vec2(-1, -1), vec2(3, -1), vec2(-1, 3));\n"
+                             "    gl_Position = vec4(at[gl_VertexID], 0, 1);\n}\n";
+
+static bool start_gl(void) {
+    PFNEGLGETPLATFORMDISPLAYEXTPROC get =
+        (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+    EGLDisplay display = get ? get(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL) : EGL_NO_DISPLAY;
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+    if (!display || !eglInitialize(display, NULL, NULL) || !eglBindAPI(EGL_OPENGL_ES_API)) return false;
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
+    return context && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) &&
+           strstr((const char *)glGetString(GL_EXTENSIONS), "GL_EXT_color_buffer_float");
+}
+
+static char *read_whole(const char *path, size_t *size) {
+    FILE *in = fopen(path, "rb");
+    assert_non_null(in);
+    char *bytes = calloc(1, 1 << 20);
+    *size = fread(bytes, 1, (1 << 20) - 1, in);
+    fclose(in);
+    return bytes;
+}
+
+static GLuint compile(GLenum type, const char *text) {
+    GLuint shader = glCreateShader(type);
+    GLint fine = 0;
+    glShaderSource(shader, 1, &text, NULL);
+    glCompileShader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &fine);
+    if (!fine) {
+        char log[2000];
+        glGetShaderInfoLog(shader, sizeof log, NULL, log);
+        print_error("%s\n%s\n", text, log);
+    }
+    assert_true(fine);
+    return shader;
+}
+
+/* Upload what a KTX2 file holds, found through its header alone. */
+static void upload(const char *path, int axis_count) {
+    static const struct {
+        uint32_t vulkan;
+        GLint internal;
+        GLenum format;
+    } formats[] = {{76, GL_R16F, GL_RED}, {83, GL_RG16F, GL_RG}, {97, GL_RGBA16F, GL_RGBA}};
+    size_t size;
+    char *file = read_whole(path, &size);
+    uint32_t head[9];
+    uint64_t level[3];
+    memcpy(head, file + 12, sizeof head);
+    memcpy(level, file + 80, sizeof level);
+    assert_true(level[0] + level[1] == size);
+    const GLenum target = axis_count > 2 ? GL_TEXTURE_3D : GL_TEXTURE_2D;
+    GLuint texture;
+    int f = 0;
+    while (formats[f].vulkan != head[0]) assert_true(++f < 3);
+    glActiveTexture(GL_TEXTURE0);
+    glGenTextures(1, &texture);
+    glBindTexture(target, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (axis_count > 2)
+        glTexImage3D(target, 0, formats[f].internal, (int)head[2], (int)head[3], (int)head[4], 0,
+                     formats[f].format, GL_HALF_FLOAT, file + level[0]);
+    else
+        glTexImage2D(target, 0, formats[f].internal, (int)head[2], (int)head[3], 0, formats[f].format,
+                     GL_HALF_FLOAT, file + level[0]);
+    glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+    free(file);
+}
+
+static GLuint float_texture(GLenum unit, const float *data) {
+    GLuint texture;
+    glActiveTexture(unit);
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, SIDE, SIDE, 0, GL_RGBA, GL_FLOAT, data);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+/* Run a fragment shader over all points. Its samplers have "table" and "points" in their names. */
+static void render(const char *fragment, const float *points, float *values) {
+    GLuint program = glCreateProgram(), frame, target;
+    GLint linked, uniforms;
+    glAttachShader(program, compile(GL_VERTEX_SHADER, vertex));
+    glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragment));
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    assert_true(linked);
+    glUseProgram(program);
+    glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &uniforms);
+    for (GLuint i = 0; i < (GLuint)uniforms; i++) {
+        char name[128];
+        GLint size;
+        GLenum type;
+        glGetActiveUniform(program, i, sizeof name, NULL, &size, &type, name);
+        glUniform1i(glGetUniformLocation(program, name), strstr(name, "points") ? 1 : 0);
+    }
+    float_texture(GL_TEXTURE1, points);
+    target = float_texture(GL_TEXTURE2, NULL);
+    glGenFramebuffers(1, &frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
+    assert_int_equal(glCheckFramebufferStatus(GL_FRAMEBUFFER), GL_FRAMEBUFFER_COMPLETE);
+    glViewport(0, 0, SIDE, SIDE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_FLOAT, values);
+    assert_int_equal(glGetError(), GL_NO_ERROR);
+}
+
+typedef struct subject {
+    const lq_kind *kind;
+    lq_table *table;
+    lq_texture texture;
+    float points[4 * POINTS];
+} subject;
+
+static void make(subject *s, const char *id, const char *const *nodes) {
+    lq_axis axes[LQ_MAX_AXES];
+    lq_settings settings = lq_settings_default();
+    lq_error error = {""};
+    s->kind = lq_kind_find(id, &error);
+    for (int a = 0; a < s->kind->axis_count; a++)
+        assert_int_equal(lq_axis_parse(&axes[a], s->kind->axes[a].name, nodes[a], &error), LQ_OK);
+    settings.tolerance = 1e-4;
+    assert_int_equal(lq_precompute(s->kind, &settings, axes, NULL, &s->table, &error), LQ_OK);
+    assert_int_equal(lq_texture_make(&s->texture, s->table, id, &error), LQ_OK);
+    for (size_t i = 0; i < POINTS; i++) {
+        double point[LQ_MAX_AXES];
+        lq_measure_point(s->table->axes, s->kind->axis_count, i, point);
+        for (int a = 0; a < 4; a++)
+            s->points[4 * i + (size_t)a] = a < s->kind->axis_count ? (float)point[a] : 0;
+    }
+    for (int a = 0; a < s->kind->axis_count; a++) lq_axis_free(&axes[a]);
+    assert_int_equal(lq_image_write(&s->texture.image, LQ_CONTAINER_KTX2, "t", at("t.ktx2"), &error), LQ_OK);
+    upload(at("t.ktx2"), s->texture.axis_count);
+}
+
+/* Against the decoder in C at all points, and against the exact integral at some. */
+static void compare(const subject *s, const float *values, double budget) {
+    const lq_settings settings = lq_settings_default();
+    double apart = 0.0, off = 0.0, spread = 0.0;
+    for (size_t i = 0; i < POINTS; i++) {
+        double point[LQ_MAX_AXES], decoded[4], exact[LQ_MAX_CHANNELS], estimate;
+        for (int a = 0; a < s->kind->axis_count; a++) point[a] = (double)s->points[4 * i + (size_t)a];
+        lq_texture_sample(&s->texture, point, 0, decoded);
+        if (i < EXACT) lq_eval(s->kind, &settings, point, exact, &estimate, NULL);
+        for (int c = 0; c < s->texture.channel_count; c++) {
+            const double value = (double)values[4 * i + (size_t)c];
+            apart = fmax(apart, fabs(value - decoded[c]));
+            spread = fmax(spread, fabs(value - (double)values[c]));
+            if (i < EXACT) off = fmax(off, fabs(value - exact[c]));
+        }
+    }
+    print_message("%s: %.2e from the C decoder, %.2e from the exact integral\n", s->kind->id, apart, off);
+    assert_true(spread > 0.1); /* the image is not empty */
+    assert_near(apart, 0.0, 1e-5);
+    assert_near(off, 0.0, budget);
+}
+
+static const char *const zeros[] = {"", ", 0.0, 0.0, 0.0", ", 0.0, 0.0", ", 0.0", ""};
+
+static void arguments(const subject *s, char *text) {
+    text[0] = '\0';
+    for (int a = 0; a < s->texture.axis_count; a++)
+        sprintf(text + strlen(text), ", q.%c", "xyzw"[s->texture.from[a]]);
+}
+
+static void run_glsl(const subject *s, float *values) {
+    size_t size;
+    lq_error error;
+    char call[64], *text = calloc(1, 1 << 16), *source;
+    assert_int_equal(lq_source_write(LQ_GLSL, &s->texture, &s->kind, 1, at("decode.glsl"), &error), LQ_OK);
+    source = read_whole(at("decode.glsl"), &size);
+    arguments(s, call);
+    sprintf(text,
+            "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\nprecision highp "
+            "sampler3D;\n%s\n"
+            "uniform sampler%dD table;\nuniform sampler2D points;\nout vec4 value;\nvoid main() {\n"
+            "    vec4 q = texelFetch(points, ivec2(gl_FragCoord.xy), 0);\n"
+            "    value = vec4(lacquer_%s(table%s)%s);\n}\n",
+            source, s->texture.axis_count > 2 ? 3 : 2, s->texture.name, call,
+            zeros[s->texture.channel_count]);
+    render(text, s->points, values);
+    free(source);
+    free(text);
+    remove(at("decode.glsl"));
+}
+
+static bool have(const char *tool) {
+    char command[64];
+    snprintf(command, sizeof command, "command -v %s >/dev/null 2>&1", tool);
+    return system(command) == 0;
+}
+
+static void run_hlsl(const subject *s, float *values) {
+    size_t size;
+    lq_error error;
+    char call[64], command[2000];
+    assert_int_equal(lq_source_write(LQ_HLSL, &s->texture, &s->kind, 1, at("decode.hlsl"), &error), LQ_OK);
+    FILE *out = fopen(at("decode.hlsl"), "a");
+    arguments(s, call);
+    fprintf(out,
+            "Texture%dD<float4> table : register(t0);\nTexture2D<float4> points : register(t1);\n"
+            "SamplerState linear_clamp : register(s2);\nfloat4 main(float4 at : SV_Position) : SV_Target\n{\n"
+            "    float4 q = points.Load(int3(at.xy, 0));\n"
+            "    return float4(lacquer_%s(table, linear_clamp%s)%s);\n}\n",
+            s->texture.axis_count > 2 ? 3 : 2, s->texture.name, call, zeros[s->texture.channel_count]);
+    fclose(out);
+    snprintf(command, sizeof command,
+             "cd %s && glslangValidator -D -V -S frag -e main -o h.spv decode.hlsl >h.log && "
+             "spirv-cross --version 300 --es h.spv --output h.glsl >>h.log 2>&1 || { cat h.log >&2; false; }",
+             folder);
+    assert_int_equal(system(command), 0);
+    char *text = read_whole(at("h.glsl"), &size);
+    /* What spirv-cross leaves at the medium precision of ES is a choice of the engine: highp, here. */
+    for (char *p; (p = strstr(text, "mediump"));) memcpy(p, "highp  ", 7);
+    render(text, s->points, values);
+    free(text);
+    static const char *const left[] = {"decode.hlsl", "h.spv", "h.log", "h.glsl"};
+    for (size_t i = 0; i < 4; i++) remove(at(left[i]));
+}
+
+static void check(const char *id, const char *const *nodes, double budget) {
+    subject *s = calloc(1, sizeof *s);
+    float *values = calloc(POINTS, 4 * sizeof *values);
+    make(s, id, nodes);
+    run_glsl(s, values);
+    compare(s, values, budget);
+    if (have("glslangValidator") && have("spirv-cross")) {
+        memset(values, 0, POINTS * 4 * sizeof *values);
+        run_hlsl(s, values);
+        compare(s, values, budget);
+    } else {
+        print_message("HLSL is not tested: glslangValidator and spirv-cross are needed\n");
+    }
+    remove(at("t.ktx2"));
+    lq_table_free(s->table);
+    lq_texture_free(&s->texture);
+    free(values);
+    free(s);
+}
+
+static void test_two_channels(void **state) {
+    (void)state;
+    check("dfg", (const char *const[]){"0:1:48:sqrt", "0:1:48"}, 1e-2);
+}
+
+static void test_one_axis(void **state) {
+    (void)state;
+    check("albedo-average", (const char *const[]){"0:1:32:power1.5"}, 2e-3);
+}
+
+static void test_volume(void **state) {
+    (void)state;
+    check("fgd", (const char *const[]){"0:1:24:sqrt", "0:1:16", "0.2:2:12", "3.9"}, 1e-2);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_channels), cmocka_unit_test(test_one_axis),
+                                       cmocka_unit_test(test_volume)};
+    if (!start_gl()) {
+        fputs("no surfaceless EGL with float targets\n", stderr);
+        return 77;
+    }
+    return cmocka_run_group_tests_name("pack-gl", tests, make_folder, remove_folder);
+}
+#endif
