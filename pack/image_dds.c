@@ -3,7 +3,7 @@
 
 static uint32_t dxgi_format(const lq_image *image) {
     static const uint32_t half[5] = {0, 54, 34, 0, 10}, single[5] = {0, 41, 16, 0, 2};
-    return (image->single ? single : half)[image->channels];
+    return image->single ? single[image->channels] : half[image->channels];
 }
 
 static void add_zeros(lq_bytes *bytes, int count) {

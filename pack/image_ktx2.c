@@ -10,7 +10,7 @@ enum { DFD_OFFSET = 104, SCHEME_ZSTD = 2, ZSTD_LEVEL = 19, ALPHA = 15 };
 /* VkFormat of 1, 2, (3,) 4 channels. */
 static uint32_t vulkan_format(const lq_image *image) {
     static const uint32_t half[5] = {0, 76, 83, 0, 97}, single[5] = {0, 100, 103, 0, 109};
-    return (image->single ? single : half)[image->channels];
+    return image->single ? single[image->channels] : half[image->channels];
 }
 
 /* The basic data format descriptor: signed floats, linear, BT.709 primaries. */

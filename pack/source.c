@@ -93,8 +93,8 @@ static void print_comment(FILE *out, const lq_texture *texture, const lq_kind *k
     for (int c = 0; c < texture->channel_count; c++) fprintf(out, " %s", texture->channels[c]);
     for (int a = 0; a < texture->axis_count; a++) {
         const lq_axis *axis = &texture->axes[a];
-        fprintf(out, "\n *   %c: %s, %s, %g to %g, %zu texels", "xyz"[a], axis -> name,
-                kind -> axes[texture->from[a]].meaning, axis->min, axis->max, axis->size);
+        fprintf(out, "\n *   %c: %s, %s, %g to %g, %zu texels", "xyz"[a], axis->name,
+                kind->axes[texture->from[a]].meaning, axis->min, axis->max, axis->size);
         if (axis->exponent != 1.0) fprintf(out, ", value = min + (max - min) u^%g", axis->exponent);
     }
     fputs(" */\n", out);
@@ -103,7 +103,7 @@ static void print_comment(FILE *out, const lq_texture *texture, const lq_kind *k
 static const char *vector(int count, lq_language language) {
     static const char *const glsl[] = {"float", "vec2", "vec3", "vec4"};
     static const char *const hlsl[] = {"float", "float2", "float3", "float4"};
-    return (language == LQ_GLSL ? glsl : hlsl)[count - 1];
+    return language == LQ_GLSL ? glsl[count - 1] : hlsl[count - 1];
 }
 
 static void print_arguments(FILE *out, const lq_texture *texture) {
