@@ -1,4 +1,4 @@
-/* test_certificate_factors.c - certificates of factored tables: the parts of the error, and one texel of
+/* test_certificate_factors_slow.c - certificates of factored tables: the parts of the error, and one texel of
  * thousands that is off by 2 %. */
 #include "tests/expect.h"
 
