@@ -1,5 +1,5 @@
 /* verb_fit.c - `lacquer fit`: the mappings of B18 refitted, with their errors. */
-#include "fit/verb_fit.h"
+#include "fit/verb_fit_bounces.h"
 
 #include "cli/message.h"
 #include "cli/options.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FAMILY = 256, RANGE, POINTS, NORM, LOSS, REPORT, TEXTURE, SNIPPET };
+enum { SAMPLES = 256, FAMILY, RANGE, POINTS, NORM, LOSS, REPORT, TEXTURE, SNIPPET };
 
 static const cli_option options[] = {
     {'o', "output", "FILE.json", "coefficients, covariance, errors, the paper's fit on the same points"},
@@ -23,6 +23,7 @@ static const cli_option options[] = {
     {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)"},
     {REPORT, "report", "FILE.svg", "charts: curve and fits; FILE-residuals.svg"},
     {TEXTURE, "texture", "FILE", "variance: log2 f over alpha, .exr or .npy; FILE-inverse"},
+    {SAMPLES, "samples", "N", "bounces, anisotropic: rays a row (default 200000)"},
     {SNIPPET, "snippet", "FILE", "the function and its inverse: .glsl, .hlsl or .h"},
     {0},
 };
@@ -35,7 +36,10 @@ static void print_notes(FILE *out) {
         "  hg            sigma_g = f(v1^-1(v_HG(g))), a Henyey-Greenstein lobe as f (B18 eq. 21)\n"
         "  transmission  alpha_t, whose reflected lobe is as wide as the transmitted one (B18 eq. 10)\n"
         "  tail          kurtosis E[sin^4] / E[sin^2]^2 of the lobe of v1: 6/5 is the uniform hemisphere,\n"
-        "                2 a Gaussian\n\nFamilies\n");
+        "                2 a Gaussian\n"
+        "or a table of what f is worth, against simulation:\n"
+        "  bounces       variance of 2, 4, 8 bounces: exact f, its fit, B18's f\n"
+        "  anisotropic   two bounces of anisotropic GGX, frames turned: f per axis (Y19)\n\nFamilies\n");
     for (int i = 0; i < LQ_FAMILIES; i++) {
         const lq_family *family = lq_family_at(i);
         fprintf(out, "  %-12s %-11s %s\n", lq_mapping_name(family->mapping), family->name, family->formula);
@@ -48,25 +52,29 @@ static int run(int argc, char **argv);
 const cli_verb cli_verb_fit = {
     .name = "fit",
     .summary = "fit the mappings of roughness, phase function and transmission",
-    .usage = "MAPPING -o FILE.json [options]",
+    .usage = "MAPPING -o FILE.json [options]\nbounces|anisotropic [--samples N] [-o FILE.json]",
     .options = options,
     .notes = print_notes,
     .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance.svg\n"
                 "lacquer fit variance --ndf gtr:gamma=3 --texture f.exr -o gtr.json\n"
                 "lacquer fit hg --family b18 -o hg.json\n"
-                "lacquer fit transmission -o transmission.json",
+                "lacquer fit transmission -o transmission.json\n"
+                "lacquer fit bounces --samples 1000000",
     .run = run,
 };
 
 static bool take_mapping(fit_request *request, const char *text) {
-    const char *names[LQ_MAPPINGS];
+    const char *names[LQ_MAPPINGS + 2] = {[LQ_MAPPINGS] = "bounces", "anisotropic"};
     for (int i = 0; i < LQ_MAPPINGS; i++) names[i] = lq_mapping_name((lq_mapping)i);
     if (request->has_mapping) {
         cli_message("unexpected '%s'; fit takes one MAPPING", text);
         return false;
     }
-    const int choice = cli_parse_choice("MAPPING", text, names, LQ_MAPPINGS);
-    request->mapping = (lq_mapping)choice;
+    const int choice = cli_parse_choice("MAPPING", text, names, LQ_MAPPINGS + 2);
+    request->table = choice < LQ_MAPPINGS    ? FIT_NO_TABLE
+                     : choice == LQ_MAPPINGS ? FIT_BOUNCES
+                                             : FIT_ANISOTROPIC;
+    request->mapping = request->table == FIT_NO_TABLE ? (lq_mapping)choice : LQ_MAP_VARIANCE;
     return request->has_mapping = choice >= 0;
 }
 
@@ -99,6 +107,8 @@ static bool take(fit_request *request, int id, const char *value) {
         choice = cli_parse_choice("--norm", value, norms, 2);
         request->smallest_rms = choice == 1;
         return choice >= 0;
+    case SAMPLES:
+        return cli_parse_count("--samples", value, 1000, 1000000000, &request->samples);
     case LOSS:
         return cli_parse_number("--loss", value, 1e-6, 1e3, &request->loss);
     case REPORT:
@@ -129,7 +139,13 @@ static bool parse(fit_request *request, int argc, char **argv) {
     for (int id; (id = cli_args_next(&args)) != CLI_END;)
         if (id == CLI_BAD || !take(request, id, args.value)) return false;
     if (!request->has_mapping) cli_message("MAPPING is missing; see `lacquer fit --help`");
-    else if (!request->output) cli_message("-o FILE.json is missing");
+    else if (request->table != FIT_NO_TABLE && (request->report || request->texture || request->snippet))
+        cli_message("bounces and anisotropic take no --report, --texture or --snippet");
+    else if (request->table == FIT_NO_TABLE && request->samples)
+        cli_message("--samples is for bounces and anisotropic");
+    else if (request->table == FIT_ANISOTROPIC && strcmp(request->ndf_text, "ggx") != 0)
+        cli_message("anisotropic knows no NDF but ggx");
+    else if (request->table == FIT_NO_TABLE && !request->output) cli_message("-o FILE.json is missing");
     else if (request->texture && request->mapping != LQ_MAP_VARIANCE)
         cli_message("--texture is for the mapping variance");
     else if (request->loss > 0.0 && !request->smallest_rms) cli_message("--loss needs --norm rms");
@@ -171,13 +187,26 @@ static void print(const fit_job *job) {
                job->published_errors.rms, job->published_errors.max, job->published_errors.max_at);
 }
 
+static bool tabulate(const fit_job *job) {
+    const fit_request *request = &job->request;
+    const size_t samples = request->samples ? request->samples : 200000;
+    const bool bounces = request->table == FIT_BOUNCES;
+    json_t *rows = bounces ? fit_bounces(job, samples) : fit_anisotropic(job, samples);
+    if (!rows) return false;
+    if (request->output) return fit_write_rows(job, bounces ? "bounces" : "anisotropic", samples, rows);
+    json_decref(rows);
+    return true;
+}
+
 static bool work(fit_job *job) {
     const fit_request *request = &job->request;
     if (!fit_measure(job)) return false;
+    if (request->table == FIT_ANISOTROPIC) return tabulate(job);
     const lq_fit_problem problem = {request->family, job->count,    job->x,
                                     job->y,          request->loss, request->smallest_rms ? 0 : 40};
     if (!fit_run_engine(&problem, &job->answer)) return false;
     compare(job);
+    if (request->table == FIT_BOUNCES) return tabulate(job);
     if (request->report && !fit_write_report(job)) return false;
     if (request->texture && !fit_write_texture(job)) return false;
     if (request->snippet && !fit_write_snippet(job)) return false;

@@ -1,6 +1,6 @@
 /* The result of a fit as JSON, and the curve itself as a table. */
 #include "cli/message.h"
-#include "fit/verb_fit.h"
+#include "fit/verb_fit_bounces.h"
 #include "tables/output.h"
 
 #include <jansson.h>
@@ -63,8 +63,7 @@ static json_t *describe(const fit_job *job) {
     return root;
 }
 
-bool fit_write_json(const fit_job *job) {
-    json_t *root = describe(job);
+static bool write_root(const fit_job *job, json_t *root) {
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(10)) : NULL;
     json_decref(root);
     lq_error error = {"the result is not valid UTF-8"};
@@ -75,6 +74,16 @@ bool fit_write_json(const fit_job *job) {
     else lq_output_abandon(output);
     free(text);
     return status == LQ_OK || (cli_fail_status(status, &error), false);
+}
+
+bool fit_write_json(const fit_job *job) {
+    return write_root(job, describe(job));
+}
+
+bool fit_write_rows(const fit_job *job, const char *table, size_t samples, json_t *rows) {
+    return write_root(job,
+                      json_pack("{s:s, s:s, s:s, s:I, s:o}", "lacquer", LQ_VERSION, "table", table, "ndf",
+                                lq_ndf_text(job->ndf), "samples", (json_int_t)samples, "rows", rows));
 }
 
 /* f over alpha as log2 f, and its inverse: alpha over log2 f. Linear filtering between the nodes is within

@@ -46,6 +46,16 @@ largest 'relative error' 0.025
 largest 'relative error' 0.2
 "$LACQUER" fit variance --family b18 -o b18.json >/dev/null
 
+# bounces: the exact f within 8 %, B18's far off; the same bits for any number of threads
+"$LACQUER" fit bounces --samples 20000 -o n.json >out
+OMP_NUM_THREADS=1 "$LACQUER" fit bounces --samples 20000 -o n1.json >/dev/null
+cmp n.json n1.json || fail 'bounces depend on threads'
+[ "$(grep -c '+-' out)" -eq 18 ] || fail "bounces: $(cat out)"
+"$LACQUER" fit anisotropic --samples 20000 -o a.json >out
+[ "$(grep -c '"turn"' a.json)" -eq 15 ] || fail "anisotropic: $(cat out)"
+refused 'no NDF but ggx' anisotropic --ndf beckmann
+refused '--samples is for' tail --samples 5000 -o x.json
+
 # the snippet computes the same function, and its inverse goes back
 cat >use.c <<'C'
 #include "v.h"
