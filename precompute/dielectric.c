@@ -89,13 +89,17 @@ static void fill_travel(lq_rough_level *r) {
         }
 }
 
+/* From this band on, light crosses again and again almost undeviated, and an interpolation that overshoots
+ * ever so slightly would be raised to the power of all these crossings: there it is linear. */
+enum { NEARLY_MATCHED = 5 };
+
 static bool leaving_make(leaving *l, const lq_ndf *ndf, double alpha, int count) {
     if (!lq_node_axis_make(&l->axis, alpha, LQ_RISING, count, 0.0)) return false;
     for (int i = 0; i < count; i++) l->lambda[i] = lq_lambda(ndf, alpha, l->axis.mu[i]);
     return true;
 }
 
-static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolution *l, bool linear) {
+static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolution *l, int band) {
     const size_t n = (size_t)l->nodes, d = (size_t)l->depths;
     lq_rough_level *r = calloc(1, sizeof *r);
     if (!r) return NULL;
@@ -104,8 +108,9 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, const resolut
     r->travel_down = lq_zeros(n * d * d);
     r->travel_up = lq_zeros(n * d * d);
     r->survival = lq_zeros(n * d);
-    const bool axis = linear ? lq_node_axis_make_linear(&r->axis, alpha, LQ_RISING, l->nodes)
-                             : lq_node_axis_make(&r->axis, alpha, LQ_RISING, l->nodes, 0.0);
+    const double scale = ldexp(alpha, -band);
+    const bool axis = band >= NEARLY_MATCHED ? lq_node_axis_make_linear(&r->axis, scale, LQ_RISING, l->nodes)
+                                             : lq_node_axis_make(&r->axis, scale, LQ_RISING, l->nodes, 0.0);
     const bool leaves = leaving_make(&r->leaving[0], ndf, alpha, LEAVING_ENERGY) &&
                         leaving_make(&r->leaving[1], ndf, alpha, LEAVING);
     if (!axis || !leaves || !r->travel_down || !r->travel_up || !r->survival) {
@@ -122,26 +127,28 @@ lq_rough lq_rough_start(const lq_ndf *ndf, double alpha) {
 }
 
 void lq_rough_free(lq_rough *rough) {
-    for (int kind = 0; kind < 2; kind++)
-        for (int l = 0; l < LQ_DIELECTRIC_LEVELS; l++) level_free(rough->levels[kind][l]);
+    for (int band = 0; band < LQ_DIELECTRIC_BANDS; band++)
+        for (int l = 0; l < LQ_DIELECTRIC_LEVELS; l++) level_free(rough->levels[band][l]);
 }
 
-/* Nearly matched media on a rough surface: light crosses again and again almost undeviated, what little is
- * reflected depends on cosines of sqrt(2 |eta - 1|) that the nodes do not resolve, and an interpolation that
- * overshoots ever so slightly would be raised to the power of all these crossings. */
-static bool nearly_matched(double alpha, double eta) {
-    return sqrt(2.0 * fabs(eta - 1.0)) < 0.04 * alpha;
+/* Energies change over cosines of alpha and, where the media hardly differ, of the critical cosine, to which
+ * the nodes are then scaled: they are dense below alpha / 2^band. Band 0 has none of it. */
+static int band_of(double alpha, double eta) {
+    const double critical = sqrt(2.0 * fabs(eta - 1.0));
+    if (critical > 0.35 * alpha) return 0;
+    const long band = lround(log2(alpha / critical));
+    return band < LQ_DIELECTRIC_BANDS ? (int)band : LQ_DIELECTRIC_BANDS - 1;
 }
 
 double lq_dielectric_regular_from(const lq_rough *rough) {
     return lq_dielectric_is_closed(rough, 2.0) ? INFINITY
-                                               : 1.0 + fmax(1e-4, 0.0009 * rough->alpha * rough->alpha);
+                                               : 1.0 + fmax(1e-4, 0.0011 * rough->alpha * rough->alpha);
 }
 
 static const lq_rough_level *level_of(lq_rough *rough, double eta, int l) {
-    const bool linear = nearly_matched(rough->alpha, eta);
-    lq_rough_level **r = &rough->levels[linear][l];
-    if (!*r) *r = level_make(rough->ndf, rough->alpha, &levels[l], linear);
+    const int band = band_of(rough->alpha, eta);
+    lq_rough_level **r = &rough->levels[band][l];
+    if (!*r) *r = level_make(rough->ndf, rough->alpha, &levels[l], band);
     return *r;
 }
 
@@ -310,7 +317,10 @@ static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
 }
 
 /* Passes count hits: a few dozen where the media differ, thousands where they nearly match. */
-enum { PASSES_MAX = 20000 };
+static int passes_max(const interface *f) {
+    const double most = 5e8 / ((double)f->level->depths.count * f->nodes * f->nodes); /* a few seconds */
+    return (int)fmin(most, 20000.0);
+}
 
 /* What the passes that are not made may add up to. */
 static const double SETTLED = 1e-9;
@@ -322,7 +332,8 @@ static bool solve(const interface *f, solution *x) {
     const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
     for (int s = 0; s < 2; s++) memset(x->before[s], 0, size * sizeof(lq_v8));
     double change = 1.0, left = 1.0;
-    for (int pass = 0; pass < PASSES_MAX && left > SETTLED && change < 10.0; pass++) {
+    const int most = passes_max(f);
+    for (int pass = 0; pass < most && left > SETTLED && change < 10.0; pass++) {
         const double before = change;
         change = 0.0;
         for (int s = 0; s < 2; s++) {

@@ -23,9 +23,9 @@
 
 /* Cosines below this are taken for it, in two-sided scattering. Light that enters along the horizon meets the
  * surface at its very top, and what is refracted there leaves again with a chance that goes like mu^Lambda_o:
- * energies drift by up to 1.5e-3 between 1e-4 and 0, over more decades than a table or a collocation in depth
+ * energies drift by some 1e-3 more between 1e-6 and 0, over more decades than a table or a collocation in depth
  * holds. */
-#define LQ_GRAZING 1e-4
+#define LQ_GRAZING 1e-6
 
 /* Relative indices this close to 1 are 1: an axis that ought to hit it does so to rounding only. */
 #define LQ_MATCHED 1e-12
@@ -44,7 +44,7 @@ typedef struct lq_question {
     double *answer; /* [t * mu_count + m] */
 } lq_question;
 
-enum { LQ_DIELECTRIC_LEVELS = 6 };
+enum { LQ_DIELECTRIC_LEVELS = 6, LQ_DIELECTRIC_BANDS = 16 };
 
 /* What all interfaces of one roughness share: nodes, depths and travel, made when a level is first asked for.
  */
@@ -53,7 +53,7 @@ typedef struct lq_rough_level lq_rough_level;
 typedef struct lq_rough {
     const lq_ndf *ndf;
     double alpha;
-    lq_rough_level *levels[2][LQ_DIELECTRIC_LEVELS];
+    lq_rough_level *levels[LQ_DIELECTRIC_BANDS][LQ_DIELECTRIC_LEVELS];
 } lq_rough;
 
 lq_rough lq_rough_start(const lq_ndf *ndf, double alpha);

@@ -10,7 +10,7 @@
     { "mu", "cosine of incidence", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 /* Two-sided scattering: precompute/dielectric.h says why. */
 #define MU_AXIS_TWO_SIDED                                                                                    \
-    { "mu", "cosine of incidence; below 1e-4 it is taken for 1e-4", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
+    { "mu", "cosine of incidence; below 1e-6 it is taken for 1e-6", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 #define ALPHA_AXIS                                                                                           \
     { "alpha", "roughness, the slope scale of the NDF", 0.0, 1.0, 0.0, 1.0, 64, LQ_MAP_LINEAR }
 
