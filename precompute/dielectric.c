@@ -140,6 +140,12 @@ static int band_of(double alpha, double eta) {
     return band < LQ_DIELECTRIC_BANDS ? (int)band : LQ_DIELECTRIC_BANDS - 1;
 }
 
+double lq_dielectric_blind_below(const lq_rough *rough, double eta) {
+    if (lq_dielectric_is_closed(rough, eta) || eta > 1.0 || band_of(rough->alpha, eta) < NEARLY_MATCHED)
+        return 0.0;
+    return 10.0 * sqrt(2.0 * (1.0 - eta));
+}
+
 double lq_dielectric_regular_from(const lq_rough *rough) {
     return lq_dielectric_is_closed(rough, 2.0) ? INFINITY
                                                : 1.0 + fmax(1e-4, 0.0011 * rough->alpha * rough->alpha);
@@ -318,8 +324,7 @@ static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
 
 /* Passes count hits: a few dozen where the media differ, thousands where they nearly match. */
 static int passes_max(const interface *f) {
-    const double most = 5e8 / ((double)f->level->depths.count * f->nodes * f->nodes); /* a few seconds */
-    return (int)fmin(most, 20000.0);
+    return (int)fmin(1.5e8 / ((double)f->level->depths.count * f->nodes * f->nodes), 20000.0); /* a second */
 }
 
 /* What the passes that are not made may add up to. */

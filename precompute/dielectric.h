@@ -62,6 +62,10 @@ void lq_rough_free(lq_rough *rough);
 /* Is the answer known in closed form: smooth, or matched media? */
 bool lq_dielectric_is_closed(const lq_rough *rough, double eta);
 
+/* Below this cosine, from the denser side of nearly matched media, the solver is of first order in its nodes and its
+ * levels need not converge: what it answers is an energy, and no more can be said. 0 for any other interface. */
+double lq_dielectric_blind_below(const lq_rough *rough, double eta);
+
 /* From this index on all of them are solved alike: neither in closed form nor as nearly matched media. */
 double lq_dielectric_regular_from(const lq_rough *rough);
 

@@ -122,6 +122,9 @@ lq_status lq_directional_solve(lq_rough *rough, double eta, double tolerance, co
         for (size_t t = 0; t < d->tau_count; t++)
             memcpy(values + t * d->mu_count, wide + t * all, d->mu_count * sizeof *values);
         if (rough->alpha < LQ_SMOOTH_ALPHA) *estimate = smooth_estimate(rough->alpha);
+        const double blind = lq_dielectric_blind_below(rough, eta);
+        for (size_t m = 0; m < d->mu_count; m++)
+            if (d->mu[m] < blind) *estimate = 1.0;
     } else {
         lq_fail(error, status, "no memory for %zu cosines", all);
     }
