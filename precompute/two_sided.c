@@ -11,22 +11,27 @@
 /* ---------------------------------------------------------------------------- refinement */
 
 /* Every level is at least 2.5 times as good as the one before, so that 1.25 of what has changed is twice what
- * is left. Seen from the denser side, where energies step at the critical angle, the factor is 2 in places.
- */
-static const double CAUTION = 1.25, DENSER_CAUTION = 2.0;
+ * is left. Seen from the denser side energies step at the critical angle, and the factor is 2 in places; a
+ * step narrower than the nodes are apart can look alike on two levels by accident. */
+static double caution(double alpha, double eta) {
+    if (eta > 1.0) return 1.25;
+    return alpha < 0.05 ? 6.0 : 2.0;
+}
 
 lq_status lq_refine(lq_rough *rough, double eta, double tolerance, lq_level_values *evaluate,
                     const void *asked, size_t count, double *values, double *estimate, lq_error *error) {
     double *now = malloc(count * sizeof *now);
     if (!now) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", count);
     lq_status status = LQ_OK;
+    /* Levels 0 and 1 have the same angles between ray and facet, and from the denser side these tell. */
+    const int first = eta < 1.0 ? 1 : 0;
     *estimate = 1.0;
-    for (int level = 0; status == LQ_OK && level<LQ_DIELECTRIC_LEVELS && * estimate> tolerance; level++) {
+    for (int level = first; status == LQ_OK && level<LQ_DIELECTRIC_LEVELS && * estimate> tolerance; level++) {
         status = evaluate(rough, eta, level, asked, now, error);
         if (status != LQ_OK) break;
         double change = 0.0;
-        for (size_t i = 0; level > 0 && i < count; i++) change = fmax(change, fabs(now[i] - values[i]));
-        if (level > 0) *estimate = fmax((eta < 1.0 ? DENSER_CAUTION : CAUTION) * change, 0.1 * tolerance);
+        for (size_t i = 0; level > first && i < count; i++) change = fmax(change, fabs(now[i] - values[i]));
+        if (level > first) *estimate = fmax(caution(rough->alpha, eta) * change, 0.1 * tolerance);
         memcpy(values, now, count * sizeof *now);
     }
     free(now);
