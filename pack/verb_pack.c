@@ -249,6 +249,6 @@ const cli_verb cli_verb_pack = {
     .options = options,
     .notes = print_notes,
     .examples = "lacquer pack recipes/dfg.json -o dfg\n"
-                "lacquer pack recipes/realtime.json -o textures --cache /tmp/lacquer",
+                "lacquer pack recipes/dfg.json -o textures --cache /tmp/lacquer",
     .run = run,
 };
