@@ -27,7 +27,7 @@ const char *lq_container_ending(lq_container container) {
 
 lq_status lq_image_create(lq_image *image, size_t width, size_t height, size_t depth, size_t layers,
                           int channels, lq_error *error) {
-    *image = (lq_image){width, height, depth, layers, channels, false, NULL};
+    *image = (lq_image){width, height, depth, layers, channels, layers > 1, false, NULL};
     image->data = calloc(lq_image_texels(image) * (size_t)channels, sizeof *image->data);
     return image->data ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "out of memory");
 }

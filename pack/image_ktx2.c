@@ -63,7 +63,7 @@ void lq_ktx2_encode(lq_bytes *bytes, const lq_image *image, bool compressed) {
     lq_bytes_u32(bytes, (uint32_t)image->width);
     lq_bytes_u32(bytes, (uint32_t)image->height); /* 1D is W x 1: more readers take it */
     lq_bytes_u32(bytes, image->depth > 1 ? (uint32_t)image->depth : 0);
-    lq_bytes_u32(bytes, image->layers > 1 ? (uint32_t)image->layers : 0);
+    lq_bytes_u32(bytes, image->array ? (uint32_t)image->layers : 0);
     lq_bytes_u32(bytes, 1);
     lq_bytes_u32(bytes, 1);
     lq_bytes_u32(bytes, compressed ? SCHEME_ZSTD : 0);

@@ -4,6 +4,7 @@
  * argument and N its texels: the end points of an axis sit on texel centres. */
 #include "pack/source.h"
 
+#include "pack/source_text.h"
 #include "tables/output.h"
 #include "tables/status.h"
 
@@ -58,8 +59,29 @@ static const char c_head[] =
     "    }\n"
     "}\n";
 
+static const char critical_text[] =
+    "\n/* The cosine below which light is totally reflected on its way into index eta < 1; else 0. */\n"
+    "%sfloat lacquer_cosine(float eta) { return %s(%s((1.0%s - eta) * (1.0%s + eta), 0.0%s)); }\n"
+    "\n/* mu measured from that cosine, in [-1, 1]. */\n"
+    "%sfloat lacquer_critical(float mu, float eta)\n{\n"
+    "    float c = lacquer_cosine(eta);\n"
+    "    if (mu < c) return -%s(1.0%s - mu / c);\n"
+    "    return c < 1.0%s ? %s((mu - c) / (1.0%s - c)) : 1.0%s;\n}\n";
+static const char clamp_text[] = "\nstatic inline float lacquer_clamp(float x, float low, float high)\n{\n"
+                                 "    return x < low ? low : x > high ? high : x;\n}\n";
+
+void lq_print_helpers(FILE *out, lq_language language) {
+    static const char *const heads[LQ_LANGUAGES] = {glsl_head, hlsl_head, c_head};
+    const bool c = language == LQ_C;
+    const char *f = c ? "f" : "", *root = c ? "sqrtf" : "sqrt", *most = c ? "fmaxf" : "max";
+    const char *storage = c ? "static inline " : "";
+    fputs(heads[language], out);
+    if (c) fputs(clamp_text, out);
+    fprintf(out, critical_text, storage, root, most, f, f, f, storage, root, f, f, root, f, f);
+}
+
 /* Shortest text that reads back as the same float, with a decimal point: shaders need one. */
-static void print_number(FILE *out, double value, lq_language language) {
+void lq_print_number(FILE *out, double value, lq_language language) {
     char text[48];
     for (int digits = 6; digits <= 9; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
@@ -71,19 +93,20 @@ static void print_number(FILE *out, double value, lq_language language) {
 }
 
 /* ((x - min) / range) clamped, through the inverse of the axis' map. */
-static void print_coordinate(FILE *out, const lq_axis *axis, lq_language language) {
+void lq_print_coordinate(FILE *out, const lq_axis *axis, const char *value, lq_language language) {
     static const char *const clamps[] = {"clamp(", "saturate(", "lacquer_clamp01("};
     static const char *const roots[] = {"sqrt(", "sqrt(", "sqrtf("};
     static const char *const powers[] = {"pow(", "pow(", "powf("};
     const bool bent = axis->exponent != 1.0, root = axis->exponent == 2.0;
     if (bent) fputs(root ? roots[language] : powers[language], out);
     fprintf(out, "%s", clamps[language]);
-    if (axis->min != 0.0) fprintf(out, "(%s - ", axis->name), print_number(out, axis->min, language);
-    else fprintf(out, "%s", axis->name);
+    if (axis->min != 0.0) fprintf(out, "(%s - ", value), lq_print_number(out, axis->min, language);
+    else fprintf(out, "%s", value);
     if (axis->min != 0.0) fputc(')', out);
-    if (axis->max - axis->min != 1.0) fputs(" / ", out), print_number(out, axis->max - axis->min, language);
+    if (axis->max - axis->min != 1.0)
+        fputs(" / ", out), lq_print_number(out, axis->max - axis->min, language);
     fputs(language == LQ_GLSL ? ", 0.0, 1.0)" : ")", out);
-    if (bent && !root) fputs(", ", out), print_number(out, 1.0 / axis->exponent, language);
+    if (bent && !root) fputs(", ", out), lq_print_number(out, 1.0 / axis->exponent, language);
     if (bent) fputc(')', out);
 }
 
@@ -121,7 +144,7 @@ static void print_shader(FILE *out, const lq_texture *texture, lq_language langu
     fputs(")\n{\n", out);
     for (int a = 0; a < texture->axis_count; a++) {
         fprintf(out, "    float %c = lacquer_texel(", "uvw"[a]);
-        print_coordinate(out, &texture->axes[a], language);
+        lq_print_coordinate(out, &texture->axes[a], texture->axes[a].name, language);
         fprintf(out, ", %zu.0);\n", texture->axes[a].size);
     }
     fprintf(out,
@@ -141,7 +164,7 @@ static void print_c(FILE *out, const lq_texture *texture) {
     fputs("};\n    const float u[] = {", out);
     for (int a = 0; a < texture->axis_count; a++) {
         if (a > 0) fputs(",\n                       ", out);
-        print_coordinate(out, &texture->axes[a], LQ_C);
+        lq_print_coordinate(out, &texture->axes[a], texture->axes[a].name, LQ_C);
     }
     fprintf(out, "};\n    lacquer_filter(table, %d, size, u, %d, %d, value);\n}\n", texture->axis_count,
             texture->image.channels, texture->channel_count);
@@ -149,12 +172,12 @@ static void print_c(FILE *out, const lq_texture *texture) {
 
 lq_status lq_source_write(lq_language language, const lq_texture *textures, const lq_kind *const *kinds,
                           size_t count, const char *path, lq_error *error) {
-    static const char *const heads[LQ_LANGUAGES] = {glsl_head, hlsl_head, c_head};
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
-    fprintf(out, "/* Decode functions, made by lacquer " LQ_VERSION ". */\n%s", heads[language]);
+    fputs("/* Decode functions, made by lacquer " LQ_VERSION ". */\n", out);
+    lq_print_helpers(out, language);
     for (size_t i = 0; i < count; i++) {
         print_comment(out, &textures[i], kinds[i]);
         if (language == LQ_C) print_c(out, &textures[i]);

@@ -3,8 +3,10 @@
 #include "tests/expect.h"
 #include "tests/scratch.h"
 
+#include "pack/factored.h"
 #include "pack/measure.h"
 #include "pack/source.h"
+#include "pack/source_text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +57,7 @@ static GLuint compile(GLenum type, const char *text) {
     if (!fine) {
         char log[2000];
         glGetShaderInfoLog(shader, sizeof log, NULL, log);
-        print_error("%s\n%s\n", text, log);
+        fprintf(stderr, "%s\n%s\n", text, log);
     }
     assert_true(fine);
     return shader;
@@ -124,7 +126,9 @@ static void render(const char *fragment, const float *points, float *values) {
         GLint size;
         GLenum type;
         glGetActiveUniform(program, i, sizeof name, NULL, &size, &type, name);
-        glUniform1i(glGetUniformLocation(program, name), strstr(name, "points") ? 1 : 0);
+        /* unit3: that unit */
+        const int unit = strstr(name, "points") ? 1 : strncmp(name, "unit", 4) == 0 ? atoi(name + 4) : 0;
+        glUniform1i(glGetUniformLocation(program, name), unit);
     }
     float_texture(GL_TEXTURE1, points);
     target = float_texture(GL_TEXTURE2, NULL);
@@ -286,9 +290,98 @@ static void test_volume(void **state) {
     check("fgd", (const char *const[]){"0:1:24:sqrt", "0:1:16", "0.2:2:12", "3.9"}, 1e-2);
 }
 
+/* ------------------------------------------------------------------ factored tables */
+
+static void upload_array(GLenum unit, const lq_image *image) {
+    const size_t count = lq_image_texels(image) * (size_t)image->channels;
+    GLuint texture;
+    glActiveTexture(unit);
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    assert_true(count > 0);
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, (int)image->width, (int)image->height,
+                 (int)image->layers, 0, GL_RGBA, GL_FLOAT, image->data); /* all exact in half */
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+static char *factored_shader(const lq_factored_textures *textures, const lq_kind *kind) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    fputs("#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n"
+          "precision highp sampler2DArray;\n",
+          out);
+    lq_print_helpers(out, LQ_GLSL);
+    lq_factored_source(out, LQ_GLSL, textures, kind);
+    fputs("#endif\nuniform sampler2D points;\nout vec4 value;\n", out);
+    for (size_t i = 0; i < textures->count; i++) fprintf(out, "uniform sampler2DArray unit%zu;\n", i + 3);
+    fprintf(out,
+            "void main() {\n    vec4 q = texelFetch(points, ivec2(gl_FragCoord.xy), 0);\n"
+            "    value = vec4(lacquer_%s(",
+            textures->name);
+    for (size_t i = 0; i < textures->count; i++) fprintf(out, "%sunit%zu", i > 0 ? ", " : "", i + 3);
+    for (int a = 0; a < textures->factored->axis_count; a++) fprintf(out, ", q.%c", "xyzw"[a]);
+    fputs("), 0.0, 0.0, 0.0);\n}\n", out);
+    fclose(out);
+    return text;
+}
+
+static void test_factored(void **state) {
+    (void)state;
+    const char *const nodes[] = {"0:1:16:sqrt", "0:1:12", "0:2:6", "0:4:6"};
+    lq_axis axes[4];
+    lq_settings settings = lq_settings_default();
+    lq_pca_options options = lq_pca_options_default();
+    lq_table *table;
+    lq_factored *factored;
+    lq_factored_textures textures;
+    lq_error error = {""};
+    const lq_kind *kind = lq_kind_find("fgd", &error);
+    for (int a = 0; a < 4; a++)
+        assert_int_equal(lq_axis_parse(&axes[a], kind->axes[a].name, nodes[a], &error), LQ_OK);
+    settings.tolerance = 1e-3;
+    assert_int_equal(lq_precompute(kind, &settings, axes, NULL, &table, &error), LQ_OK);
+    options.scheme = LQ_SEQUENTIAL;
+    options.separation_count = 2;
+    options.separations[0] = (lq_separation){1, {3}, 2};
+    options.separations[1] = (lq_separation){1, {2}, 3};
+    if (lq_pca(table, 0, &options, NULL, &factored, &error) != LQ_OK) fail_msg("%s", error.text);
+    assert_int_equal(lq_factored_layout(&textures, factored, "fgd", &error), LQ_OK);
+    float *points = calloc(POINTS, 4 * sizeof *points), *values = calloc(POINTS, 4 * sizeof *values);
+    double apart = 0.0, highest = 0.0;
+    for (size_t i = 0; i < POINTS; i++) {
+        double point[4];
+        lq_measure_point(axes, 4, i, point);
+        for (int a = 0; a < 4; a++) points[4 * i + (size_t)a] = (float)point[a];
+    }
+    for (size_t i = 0; i < textures.count; i++)
+        upload_array(GL_TEXTURE3 + (GLenum)i, &textures.bases[i].image);
+    char *text = factored_shader(&textures, kind);
+    render(text, points, values);
+    for (size_t i = 0; i < POINTS; i++) {
+        double point[4];
+        for (int a = 0; a < 4; a++) point[a] = (double)points[4 * i + (size_t)a];
+        apart = fmax(apart, fabs((double)values[4 * i] - lq_factored_lookup(factored, point)));
+        highest = fmax(highest, (double)values[4 * i]);
+    }
+    print_message("factored fgd: %.2e from the C decoder\n", apart);
+    assert_near(apart, 0.0, 1e-5);
+    assert_true(highest > 0.5);
+    for (int a = 0; a < 4; a++) lq_axis_free(&axes[a]);
+    lq_factored_textures_free(&textures);
+    lq_factored_free(factored);
+    lq_table_free(table);
+    free(points);
+    free(values);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_channels), cmocka_unit_test(test_one_axis),
-                                       cmocka_unit_test(test_volume)};
+                                       cmocka_unit_test(test_volume), cmocka_unit_test(test_factored)};
     if (!start_gl()) {
         fputs("no surfaceless EGL with float targets\n", stderr);
         return 77;
