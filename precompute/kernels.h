@@ -79,6 +79,8 @@ typedef struct lq_solver_kernels {
     /* out[q] = sum_k arrival[k] e[k * directions + q], or with the depths backwards. */
     void (*average)(int depths, int directions, const double *arrival, int backwards, const lq_v8 *e,
                     lq_v8 *out);
+    /* out: the sum of weights[k * nodes + j] c[k * 2 nodes + j]. */
+    void (*contract)(int depths, int nodes, const double *weights, const lq_v8 *c, lq_v8 *out);
     void (*read)(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio, lq_v8 *energy);
 } lq_solver_kernels;
 

@@ -332,8 +332,19 @@ static void average(int depths, int directions, const double *restrict arrival, 
     }
 }
 
+static void contract(int depths, int nodes, const double *restrict weights, const lq_v8 *restrict c,
+                     lq_v8 *restrict out) {
+    lq_v8 sum[4] = {{0.0}};
+    for (int k = 0; k < depths; k++) {
+        const double *weight = weights + (size_t)k * (size_t)nodes;
+        const lq_v8 *at = c + (size_t)k * 2 * (size_t)nodes;
+        for (int j = 0; j < nodes; j++) sum[j % 4] += weight[j] * at[j];
+    }
+    *out = sum[0] + sum[1] + (sum[2] + sum[3]);
+}
+
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments,  escaping, spread, assemble, sweep,
-                                              survival, travel,   meet,   average,  read_energies};
+    static const lq_solver_kernels kernels = {moments, escaping, spread,  assemble, sweep,        survival,
+                                              travel,  meet,     average, contract, read_energies};
     return &kernels;
 }

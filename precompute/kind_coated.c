@@ -29,8 +29,8 @@ static lq_status solve_pieces(const lq_job *job, lq_rough *rough, double eta, do
     lq_status status = lq_directional_solve(rough, eta, tolerance, &in, p->t01, &estimate[0], error);
     for (size_t m = 0; m < mus; m++) p->r01[m] = 1.0 - p->t01[taus * mus + m];
     if (status == LQ_OK)
-        status =
-            lq_refine(rough, eta, tolerance, lq_diffuse_values, &d, 2 * taus, p->t10, &estimate[1], error);
+        status = lq_mean_solve(rough, eta, tolerance, lq_diffuse_values, &d, 2 * taus, p->t10, &estimate[1],
+                               error);
     free(tau);
     p->error = fmax(estimate[0], estimate[1]);
     return status;

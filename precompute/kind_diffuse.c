@@ -37,20 +37,20 @@ typedef struct rough_diffuse {
 static lq_status solve_diffuse_at(const void *user, double eta, double tolerance, double *values,
                                   double *estimate, lq_error *error) {
     const rough_diffuse *r = user;
-    return lq_refine(r->rough, eta, tolerance, r->evaluate, &r->asked, r->count, values, estimate, error);
+    return lq_mean_solve(r->rough, eta, tolerance, r->evaluate, &r->asked, r->count, values, estimate, error);
 }
 
 /* Kinds over eta, alpha(, tau): the slice is the roughness, the second axis. */
-static lq_status diffuse_slice(const lq_job *job, size_t index, lq_level_values *evaluate, bool transmitted,
-                               size_t taus, double *values, double *estimate, lq_error *error) {
+static lq_status diffuse_slice(const lq_job *job, double tolerance, size_t index, lq_level_values *evaluate,
+                               bool transmitted, size_t taus, double *values, double *estimate,
+                               lq_error *error) {
     enum { ETA, ALPHA, TAU };
     const size_t etas = job->size[ETA];
     lq_rough rough = lq_rough_start(job->ndf, job->nodes[ALPHA][index]);
     const lq_diffuse asked = {job->kind->axis_count > TAU ? job->nodes[TAU] : &no_loss, taus, transmitted,
                               !transmitted};
     const rough_diffuse r = {&rough, evaluate, asked, taus};
-    const lq_eta_curve curve = {solve_diffuse_at, &r, taus, lq_dielectric_regular_from(&rough),
-                                job->tolerance};
+    const lq_eta_curve curve = {solve_diffuse_at, &r, taus, lq_dielectric_regular_from(&rough), tolerance};
     double *all = malloc(etas * taus * sizeof *all);
     lq_status status = all ? lq_eta_sweep(&curve, job->nodes[ETA], etas, all, estimate, error)
                            : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", etas * taus);
@@ -64,28 +64,34 @@ static lq_status diffuse_slice(const lq_job *job, size_t index, lq_level_values 
 static lq_status diffuse_transmission_slice(const lq_job *job, const void *state, size_t index,
                                             double *const *values, double *estimate, lq_error *error) {
     (void)state;
-    return diffuse_slice(job, index, lq_diffuse_values, true, job->size[2], values[0], estimate, error);
+    return diffuse_slice(job, job->tolerance, index, lq_diffuse_values, true, job->size[2], values[0],
+                         estimate, error);
 }
 
 static lq_status diffuse_reflection_slice(const lq_job *job, const void *state, size_t index,
                                           double *const *values, double *estimate, lq_error *error) {
     (void)state;
-    return diffuse_slice(job, index, lq_diffuse_values, false, job->size[2], values[0], estimate, error);
+    return diffuse_slice(job, job->tolerance, index, lq_diffuse_values, false, job->size[2], values[0],
+                         estimate, error);
 }
+
+/* The roughness moves dalpha/dv1 times as much as the variance, no more than this where these variances lie.
+ */
+static const double ROUGHNESS_SLOPE = 2.5;
 
 static lq_status variance_slice(const lq_job *job, const void *state, size_t index, double *const *values,
                                 double *estimate, lq_error *error) {
     (void)state;
-    const lq_status status = diffuse_slice(job, index, variance_values, true, 1, values[0], estimate, error);
+    const lq_status status = diffuse_slice(job, job->tolerance / ROUGHNESS_SLOPE, index, variance_values,
+                                           true, 1, values[0], estimate, error);
     for (size_t e = 0; status == LQ_OK && e < job->size[0]; e++)
         values[1][e] = lq_lobe_roughness(job->ndf, values[0][e]);
-    /* The roughness moves dalpha/dv1 times as much, no more than 2.5 where these variances lie. */
-    *estimate *= 2.5;
+    *estimate *= ROUGHNESS_SLOPE;
     return status;
 }
 
 const lq_evaluator lq_evaluate_diffuse_transmission = {"diffuse-transmission", 1, NULL,
                                                        diffuse_transmission_slice, NULL};
-const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection", 1, NULL,
-                                                     diffuse_reflection_slice, NULL};
+const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection", 1, NULL, diffuse_reflection_slice,
+                                                     NULL};
 const lq_evaluator lq_evaluate_variance = {"variance", 1, NULL, variance_slice, NULL};

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 void lq_mean_make(lq_mean_rule *mean, double alpha, double index, int level) {
-    static const int nodes[LQ_DIELECTRIC_LEVELS] = {5, 7, 10, 14, 18, 22};
+    static const int nodes[LQ_DIELECTRIC_LEVELS] = {5, 7, 10, 14, 18, 22, 26};
     lq_gauss rule;
     lq_panels panels;
     lq_gauss_make(&rule, nodes[level]);

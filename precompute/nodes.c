@@ -62,23 +62,6 @@ bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int cou
     return true;
 }
 
-bool lq_node_axis_make_linear(lq_node_axis *axis, double alpha, lq_sense sense, int count) {
-    *axis = (lq_node_axis){.count = count, .elements = 1, .nodes = count, .linear = true};
-    axis->bound[1] = 1.0;
-    axis->map[0] = map_of(alpha, sense, 0.0, 1.0);
-    for (int i = 0; i < count; i++) axis->mu[i] = map_inverse(&axis->map[0], (2.0 * i + 1.0) / count - 1.0);
-    return true;
-}
-
-/* The two nodes around one cosine share its weight. */
-static void add_linear(const lq_node_axis *axis, double mu, double weight, double *weights) {
-    const double at = 0.5 * ((map_forward(&axis->map[0], mu) + 1.0) * axis->count - 1.0);
-    const double clamped = fmax(fmin(at, axis->count - 1.0), 0.0);
-    const int i = (int)fmin(clamped, axis->count - 2.0);
-    weights[i] += weight * (1.0 - (clamped - i));
-    weights[i + 1] += weight * (clamped - i);
-}
-
 void lq_node_axis_free(lq_node_axis *axis) {
     free(axis->basis);
     axis->basis = NULL;
@@ -91,11 +74,7 @@ static int element_of(const lq_node_axis *axis, double mu) {
 double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
                             const double *cosine, const double *weight, double *moments) {
     double total = 0.0;
-    for (size_t i = 0; axis->linear && i < count; i++) {
-        add_linear(axis, cosine[i], weight[i], moments);
-        total += weight[i];
-    }
-    for (size_t from = 0; from < count && !axis->linear;) {
+    for (size_t from = 0; from < count;) {
         /* Those of one element are neighbours. */
         const int e = element_of(axis, cosine[from]);
         size_t to = axis->elements == 1 ? count : from + 1;
@@ -111,10 +90,6 @@ double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *k
 
 void lq_node_axis_project(const lq_node_axis *axis, const double *moments, double *weights) {
     const int n = axis->nodes;
-    if (axis->linear) {
-        memcpy(weights, moments, (size_t)n * sizeof *weights);
-        return;
-    }
     memset(weights, 0, (size_t)axis->count * sizeof *weights);
     for (int e = 0; e < axis->elements; e++, weights += n)
         for (int m = 0; m < n; m++) {

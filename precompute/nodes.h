@@ -23,7 +23,6 @@ typedef struct lq_node_axis {
     int nodes;                         /* of one element */
     double bound[LQ_ELEMENTS_MAX + 1]; /* cosines */
     lq_cosine_map map[LQ_ELEMENTS_MAX];
-    bool linear;             /* interpolate linearly between evenly spaced nodes: see below */
     double mu[LQ_NODES_MAX]; /* the nodes, ascending */
     double *basis;           /* node values to Chebyshev coefficients, [m * nodes + i] */
 } lq_node_axis;
@@ -32,10 +31,6 @@ typedef struct lq_node_axis {
  * without memory; free it in either case. */
 bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split);
 
-/* One element of evenly spaced nodes with linear interpolation, constant beyond the ends. Far less accurate,
- * but its weights are never negative: an operator made with it cannot amplify, however often it is applied.
- */
-bool lq_node_axis_make_linear(lq_node_axis *axis, double alpha, lq_sense sense, int count);
 void lq_node_axis_free(lq_node_axis *axis);
 
 /* Add weighted cosines, running monotonically, to the Chebyshev moments of the axis, [element * nodes + m].

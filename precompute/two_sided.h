@@ -20,6 +20,10 @@ typedef lq_status lq_level_values(lq_rough *rough, double eta, int level, const 
 lq_status lq_refine(lq_rough *rough, double eta, double tolerance, lq_level_values *evaluate,
                     const void *asked, size_t count, double *values, double *estimate, lq_error *error);
 
+/* The same of cosine-weighted means: those of matched media (dielectric.h) are the smooth interface's. */
+lq_status lq_mean_solve(lq_rough *rough, double eta, double tolerance, lq_level_values *evaluate,
+                        const void *asked, size_t count, double *values, double *estimate, lq_error *error);
+
 /* Cosines and transmittances of a table, and what is asked of each. */
 typedef struct lq_directional {
     lq_scattering scattering;

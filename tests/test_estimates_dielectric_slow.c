@@ -10,9 +10,11 @@
 /* mu, alpha, eta, tau */
 static void random_point(unsigned long long i, double *point) {
     const double u[4] = {uniform(4 * i), uniform(4 * i + 1), uniform(4 * i + 2), uniform(4 * i + 3)};
-    point[0] = i % 3 == 0 ? pow(10.0, -3.0 + 2.0 * u[0]) : u[0];
-    point[1] = pow(10.0, -3.0 + 3.0 * u[1]);
+    point[0] = i % 3 == 0 ? pow(10.0, -6.0 + 5.0 * u[0]) : u[0];
+    point[1] = pow(10.0, -4.0 + 4.0 * u[1]);
     point[2] = i % 5 == 0 ? 0.98 + 0.04 * u[2] : pow(4.0, 2.0 * u[2] - 1.0);
+    /* A few nearly match: they take seconds. */
+    if (i % 100 == 7) point[2] = 1.0 + (u[2] < 0.5 ? -1.0 : 1.0) * pow(10.0, -6.0 + 6.0 * fabs(u[2] - 0.5));
     point[3] = i % 7 == 0 ? 1.0 : u[3];
 }
 

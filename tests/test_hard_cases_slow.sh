@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `lacquer validate hard-cases` as a user runs it: every case is listed, and all pass but those within 1e-6 of
-# matched media, where the two-sided solver does not converge at grazing and says so.
+# `lacquer validate hard-cases` as a user runs it: every case is listed, and all pass but the
+# estimates of grids that hold a cosine on the step of total reflection between media matched within 1e-6.
 set -euo pipefail
 : "${LACQUER:?path of the program}"
 
@@ -20,8 +20,8 @@ for kind in fgd albedo dfg tir-pass fgd-dielectric transmission diffuse-transmis
     coated-lambertian; do
     grep -qE "^  $kind alpha=1, .*pass$" out || { echo "no range of $kind at alpha = 1" >&2; exit 1; }
 done
-# its grids hold eta = 1 +- 1e-6
-known='eta=(0.999999|1.000001)|^  (fgd-dielectric|transmission|variance|coated-lambertian), [0-9]+ points|^  fgd-dielectric \+ transmission'
+# mu = 1e-3 is on the step of eta = 1 - 1e-6 at alpha = 0.3 (docs/theory.md, nearly matched media)
+known='^  (fgd-dielectric|transmission|coated-lambertian), [0-9]+ points'
 if grep 'FAIL$' out | grep -vE "$known"; then
     echo "cases failed that are not among the known ones" >&2
     exit 1
