@@ -1,6 +1,7 @@
 /* cache.c - a folder of EXR archives named by the hash of their key. */
 #include "pack/cache.h"
 
+#include "pca/factors.h"
 #include "tables/status.h"
 
 #include <dlfcn.h>
@@ -57,13 +58,37 @@ static bool make_folders(const char *folder) {
     return mkdir(path, 0777) == 0 || errno == EEXIST;
 }
 
+lq_factored *lq_cache_find_factored(const char *folder, const char *key) {
+    char path[PATH_MAX];
+    lq_factored *factored = NULL;
+    name_file(path, sizeof path, folder, key);
+    if (lq_factored_read(&factored, path, NULL) != LQ_OK) return NULL;
+    const char *of = lq_factored_fact(factored, key_fact);
+    if (of && strcmp(of, key) == 0) return factored;
+    lq_factored_free(factored);
+    return NULL;
+}
+
+/* Where the entry for `key` goes; its folder is there then. */
+static lq_status place(char *path, size_t size, const char *folder, const char *key, lq_error *error) {
+    name_file(path, size, folder, key);
+    if (make_folders(folder)) return LQ_OK;
+    return lq_fail(error, LQ_IO, "cache %s: %s; name another with --cache", folder, strerror(errno));
+}
+
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error) {
     char path[PATH_MAX];
-    if (!make_folders(folder))
-        return lq_fail(error, LQ_IO, "cache %s: %s; name another with --cache", folder, strerror(errno));
-    name_file(path, sizeof path, folder, key);
-    lq_status status = lq_table_set_fact(table, key_fact, key, error);
+    lq_status status = place(path, sizeof path, folder, key, error);
+    if (status == LQ_OK) status = lq_table_set_fact(table, key_fact, key, error);
     return status == LQ_OK ? lq_table_write_exr(table, path, error) : status;
+}
+
+lq_status lq_cache_store_factored(const char *folder, const char *key, lq_factored *factored,
+                                  lq_error *error) {
+    char path[PATH_MAX];
+    lq_status status = place(path, sizeof path, folder, key, error);
+    if (status == LQ_OK) status = lq_factored_set_fact(factored, key_fact, key, error);
+    return status == LQ_OK ? lq_factored_write(factored, path, error) : status;
 }
 
 const char *lq_cache_build(char *text, size_t size) {

@@ -14,6 +14,11 @@ lq_table *lq_cache_find(const char *folder, const char *key);
  * the same. The folder is made where it is missing. */
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error);
 
+/* The same for factors. */
+lq_factored *lq_cache_find_factored(const char *folder, const char *key);
+lq_status lq_cache_store_factored(const char *folder, const char *key, lq_factored *factored,
+                                  lq_error *error);
+
 /* What the numbers depend on and no option names: a hash of the program that computes them. */
 const char *lq_cache_build(char *text, size_t size);
 

@@ -25,6 +25,7 @@ lq_status lq_factored_layout(lq_factored_textures *textures, const lq_factored *
                              lq_error *error) {
     lq_status status = LQ_OK;
     *textures = (lq_factored_textures){.factored = factored};
+    snprintf(textures->stem, sizeof textures->stem, "%s", name);
     snprintf(textures->name, sizeof textures->name, "%s", name);
     for (char *c = textures->name; *c; c++)
         if (!isalnum((unsigned char)*c)) *c = '_';

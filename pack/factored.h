@@ -17,6 +17,7 @@ typedef struct lq_bases {
 
 typedef struct lq_factored_textures {
     char name[LQ_NAME_SIZE]; /* an identifier */
+    char stem[LQ_NAME_SIZE]; /* of its files: STEM.0_1.ktx2 */
     const lq_factored *factored;
     size_t count;
     lq_bases bases[LQ_MAX_PIECES * LQ_MAX_FACTORS];

@@ -141,7 +141,7 @@ static void print_comment(FILE *out, const lq_factored_textures *textures, const
     for (size_t i = 0; i < textures->count; i++) {
         const lq_image *image = &textures->bases[i].image;
         fprintf(out, " *   t%s: file %s.%s, %zu x %zu texels, %zu layers of 4 bases\n",
-                textures->bases[i].suffix, textures->name, textures->bases[i].suffix, image->width,
+                textures->bases[i].suffix, textures->stem, textures->bases[i].suffix, image->width,
                 image->height, image->layers);
     }
     for (int a = 0; a < kind->axis_count; a++)

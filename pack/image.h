@@ -12,7 +12,7 @@ typedef struct lq_image {
     size_t width, height, depth; /* 1 where the image has no such axis */
     size_t layers;               /* > 1: an array of 2D images; depth is then 1 */
     int channels;                /* 1, 2 or 4 */
-    bool array;  /* an array also where it has one layer */
+    bool array;                  /* an array also where it has one layer */
     bool single;                 /* float32; otherwise half */
     float *data;                 /* what the file holds: exact in half where `single` is not set */
 } lq_image;

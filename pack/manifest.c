@@ -11,45 +11,91 @@
 #include <stdlib.h>
 #include <string.h>
 
-void lq_packed_file(const lq_packed *packed, const char *ending, char *name, size_t size) {
-    snprintf(name, size, "%s%s", packed->from->name, ending);
+size_t lq_packed_images(const lq_packed *packed) {
+    return packed->factored ? packed->factors.count : 1;
+}
+
+const lq_image *lq_packed_image(const lq_packed *packed, size_t i) {
+    return packed->factored ? &packed->factors.bases[i].image : &packed->texture.image;
+}
+
+void lq_packed_stem(const lq_packed *packed, size_t i, char *stem, size_t size) {
+    if (packed->factored) snprintf(stem, size, "%s.%s", packed->from->name, packed->factors.bases[i].suffix);
+    else snprintf(stem, size, "%s", packed->from->name);
+}
+
+void lq_packed_array(const lq_packed *packed, size_t i, char *array, size_t size) {
+    if (packed->factored)
+        snprintf(array, size, "lacquer_%s_%s_texels", packed->factors.name, packed->factors.bases[i].suffix);
+    else snprintf(array, size, "lacquer_%s_texels", packed->texture.name);
+}
+
+size_t lq_packed_bytes(const lq_packed *packed) {
+    size_t bytes = 0;
+    for (size_t i = 0; i < lq_packed_images(packed); i++) bytes += lq_image_bytes(lq_packed_image(packed, i));
+    return bytes;
 }
 
 static json_t *number(double value) {
     return json_pack("f", value);
 }
 
-static json_t *describe_axis(const lq_texture *texture, int a) {
+static json_t *describe_axis(const lq_axis *axis, int a) {
     static const char *const directions[] = {"x", "y", "z"};
-    const lq_axis *axis = &texture->axes[a];
     return json_pack("{s:s, s:s, s:I, s:f, s:f, s:f, s:s}", "name", axis->name, "direction", directions[a],
                      "texels", (json_int_t)axis->size, "min", axis->min, "max", axis->max, "exponent",
                      axis->exponent, "lookup",
                      "u = ((value - min) / (max - min))^(1 / exponent), then u (1 - 1/texels) + 0.5/texels");
 }
 
-static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed) {
+static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image) {
     static const char *const hints[LQ_CONTAINERS] = {
         "KTX 2.0",
         "KTX 2.0, zstd",
         "DDS, DX10 block",
-        "OpenEXR RGBA half, slices side by side",
+        "OpenEXR RGBA half, slices side by side, layers below each other",
         "NumPy, first axis fastest (last index before the channels)",
         "C array"};
     json_t *files = json_array();
-    char name[64];
+    char stem[64], name[96];
+    lq_packed_stem(packed, image, stem, sizeof stem);
     for (int c = 0; c < LQ_CONTAINERS; c++) {
         if (!recipe->containers[c]) continue;
-        lq_packed_file(packed, lq_container_ending((lq_container)c), name, sizeof name);
+        snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
         json_array_append_new(files, json_pack("{s:s, s:s}", "file", name, "format", hints[c]));
     }
+    return files;
+}
+
+static void add_binaries(const lq_packed *packed, json_t *files) {
+    char name[64];
     for (int l = 0; l < LQ_LAYOUTS; l++) {
         if (!packed->from->layouts[l]) continue;
         snprintf(name, sizeof name, "%s.%s.bin", packed->from->name, lq_layout_name((lq_layout)l));
         json_array_append_new(files,
                               json_pack("{s:s, s:s}", "file", name, "format", lq_layout_name((lq_layout)l)));
     }
-    return files;
+}
+
+/* Each factor: the argument of the decode function, its axes and its files. */
+static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed) {
+    json_t *textures = json_array();
+    for (size_t i = 0; i < packed->factors.count; i++) {
+        const lq_bases *bases = &packed->factors.bases[i];
+        const lq_factor *factor = &packed->factored->pieces[bases->piece].factors[bases->factor];
+        json_t *axes = json_array();
+        char argument[32];
+        snprintf(argument, sizeof argument, "t%s", bases->suffix);
+        for (int a = 0; a < factor->axis_count; a++)
+            json_array_append_new(axes, describe_axis(&factor->axes[a].texels, a));
+        json_array_append_new(textures,
+                              json_pack("{s:s, s:I, s:I, s:I, s:s, s:o, s:o}", "argument", argument, "piece",
+                                        (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count,
+                                        "layers", (json_int_t)bases->image.layers, "layout",
+                                        "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
+                                        describe_files(recipe, packed, i)));
+    }
+    return textures;
 }
 
 static json_t *describe_error(const lq_packed *packed) {
@@ -67,23 +113,44 @@ static json_t *describe_error(const lq_packed *packed) {
     return error;
 }
 
+/* How it was made: the facts of the table, or of the factors, which have those of their table. */
+static json_t *describe_origin(const lq_packed *packed) {
+    const size_t count = packed->factored ? packed->factored->fact_count : packed->table->fact_count;
+    const lq_fact *facts = packed->factored ? packed->factored->facts : packed->table->facts;
+    json_t *made = json_object();
+    for (size_t i = 0; i < count; i++)
+        if (strncmp(facts[i].key, "cache", 5) != 0)
+            json_object_set_new(made, facts[i].key, json_string(facts[i].value));
+    return made;
+}
+
 static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed) {
     const lq_texture *texture = &packed->texture;
-    json_t *axes = json_array(), *channels = json_array(), *made = json_object();
-    for (int a = 0; a < texture->axis_count; a++) json_array_append_new(axes, describe_axis(texture, a));
-    for (int c = 0; c < texture->channel_count; c++)
-        json_array_append_new(channels, json_string(texture->channels[c]));
-    for (size_t i = 0; i < packed->table->fact_count; i++)
-        if (strncmp(packed->table->facts[i].key, "cache", 5) != 0)
-            json_object_set_new(made, packed->table->facts[i].key,
-                                json_string(packed->table->facts[i].value));
+    const lq_recipe_table *from = packed->from;
+    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0);
     char function[64];
-    snprintf(function, sizeof function, "lacquer_%s", texture->name);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:o, s:o, s:o}", "name", packed->from->name,
-                     "table", packed->from->kind->id, "title", packed->from->kind->title, "quantity",
-                     packed->from->kind->quantity, "function", function, "axes", axes, "channels", channels,
-                     "bytes", (json_int_t)lq_image_bytes(&texture->image), "files",
-                     describe_files(recipe, packed), "error", describe_error(packed), "made", made);
+    snprintf(function, sizeof function, "lacquer_%s",
+             packed->factored ? packed->factors.name : texture->name);
+    json_t *table = json_pack("{s:s, s:s, s:s, s:s, s:s, s:I}", "name", from->name, "table", from->kind->id,
+                              "title", from->kind->title, "quantity", from->kind->quantity, "function",
+                              function, "bytes", (json_int_t)lq_packed_bytes(packed));
+    if (packed->factored) {
+        json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
+        json_object_set_new(table, "textures", describe_factors(recipe, packed));
+    } else {
+        json_t *axes = json_array(), *channels = json_array();
+        for (int a = 0; a < texture->axis_count; a++)
+            json_array_append_new(axes, describe_axis(&texture->axes[a], a));
+        for (int c = 0; c < texture->channel_count; c++)
+            json_array_append_new(channels, json_string(texture->channels[c]));
+        json_object_set_new(table, "axes", axes);
+        json_object_set_new(table, "channels", channels);
+    }
+    add_binaries(packed, files);
+    json_object_set_new(table, "files", files);
+    json_object_set_new(table, "error", describe_error(packed));
+    json_object_set_new(table, "made", describe_origin(packed));
+    return table;
 }
 
 lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *path,
@@ -92,7 +159,7 @@ lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, co
     size_t bytes = 0;
     for (size_t i = 0; i < recipe->count; i++) {
         json_array_append_new(tables, describe_table(recipe, &packed[i]));
-        bytes += lq_image_bytes(&packed[i].texture.image);
+        bytes += lq_packed_bytes(&packed[i]);
     }
     for (int l = 0; l < LQ_LANGUAGES; l++)
         json_array_append_new(sources, json_string(lq_source_file((lq_language)l)));

@@ -1,6 +1,7 @@
 /* measure.c - errors of a texture at points off its grid. */
 #include "pack/measure.h"
 
+#include "pca/measure.h"
 #include "tables/status.h"
 
 #include <math.h>
@@ -17,13 +18,17 @@ static double golden(int dimensions) {
     return g;
 }
 
+/* Where the axis is measured from. */
+static double lowest_of(const lq_axis *axis) {
+    const char *name = axis->name;
+    const bool bounded = strcmp(name, "mu") == 0 || strcmp(name, "alpha") == 0 || strcmp(name, "tau") == 0;
+    return bounded ? fmin(fmax(axis->min, LQ_MEASURE_FROM), axis->max) : axis->min;
+}
+
 void lq_measure_point(const lq_axis *axes, int axis_count, size_t i, double *point) {
     const double g = golden(axis_count);
     for (int a = 0; a < axis_count; a++) {
-        const char *name = axes[a].name;
-        const bool bounded =
-            strcmp(name, "mu") == 0 || strcmp(name, "alpha") == 0 || strcmp(name, "tau") == 0;
-        const double lowest = bounded ? fmin(fmax(axes[a].min, LQ_MEASURE_FROM), axes[a].max) : axes[a].min;
+        const double lowest = lowest_of(&axes[a]);
         const double u = fmod(0.5 + (double)(i + 1) * pow(g, -(a + 1)), 1.0);
         point[a] = lowest + (axes[a].max - lowest) * u;
     }
@@ -111,5 +116,32 @@ lq_status lq_measure_texture(const lq_texture *texture, const lq_axis *axes, int
     measure->rms = sqrt(squares / (double)all);
     measure->p99 = errors[(size_t)ceil(0.99 * (double)all) - 1];
     free(errors);
+    return LQ_OK;
+}
+
+lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
+                                size_t points, size_t seed, const lq_progress *progress, lq_table **exact,
+                                lq_error *error) {
+    lq_axis nodes[LQ_MAX_AXES] = {0};
+    double min[LQ_MAX_AXES], max[LQ_MAX_AXES];
+    /* Its cube is what three axes of so many nodes have. */
+    const size_t each = (size_t)fmin(fmax(ceil(cbrt((double)points)), 4.0), 64.0);
+    for (int a = 0; a < kind->axis_count; a++) {
+        min[a] = lowest_of(&axes[a]);
+        max[a] = axes[a].max;
+    }
+    lq_status status = lq_random_axes(axes, kind->axis_count, min, max, each, seed, nodes, error);
+    if (status == LQ_OK) status = lq_precompute(kind, settings, nodes, progress, exact, error);
+    for (int a = 0; a < kind->axis_count; a++) lq_axis_free(&nodes[a]);
+    return status;
+}
+
+lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact,
+                              lq_measure *measure, lq_error *error) {
+    lq_pca_errors errors;
+    const lq_status status = lq_factored_errors(factored, exact, channel, &errors, error);
+    if (status != LQ_OK) return status;
+    *measure = (lq_measure){errors.points, errors.rms, errors.p99, errors.max, {0}};
+    memcpy(measure->worst, errors.worst, sizeof measure->worst);
     return LQ_OK;
 }

@@ -26,4 +26,13 @@ lq_status lq_measure_exact(const lq_kind *kind, const lq_settings *settings, con
 lq_status lq_measure_texture(const lq_texture *texture, const lq_axis *axes, int axis_count,
                              const lq_table *exact, lq_measure *measure, lq_error *error);
 
+/* For factors: the exact values at random nodes of the axes, stratified and denser where theirs are, from
+ * LQ_MEASURE_FROM up and at least `points`: a solve serves many of them. */
+lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
+                                size_t points, size_t seed, const lq_progress *progress, lq_table **exact,
+                                lq_error *error);
+
+lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact,
+                              lq_measure *measure, lq_error *error);
+
 #endif

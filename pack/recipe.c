@@ -1,152 +1,69 @@
 /* recipe.c - reads a recipe and says, with the line, what is wrong in it. */
 #include "pack/recipe.h"
 
+#include "pack/recipe_text.h"
 #include "pack/texture.h"
 #include "tables/axis.h"
 #include "tables/status.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS = 2000, MOST_POINTS = 1000000, WHOLE = -1, ENTRY_DEPTH = 3 };
+enum { POINTS = 2000, MOST_POINTS = 1000000 };
 
 static const char root_keys[] = "name, about, ndf, formats, budget, points, max-bytes, tables";
-static const char table_keys[] = "table, name, axes, ndf, tolerance, scattering, masking, budget, layouts";
+static const char table_keys[] =
+    "table, name, axes, ndf, tolerance, scattering, masking, budget, layouts, pca";
 static const char budget_keys[] = "p99, max";
 
-typedef struct reader {
-    const char *path;
-    const char *text; /* the file */
-    int entry;        /* the table being read, or WHOLE */
-    lq_recipe *recipe;
-    lq_error *error;
-} reader;
-
-/* ------------------------------------------------------------------------------------- lines
- * The JSON library forgets where a value stood. The text was valid JSON, so that finding the string again is
- * a matter of counting brackets and skipping strings. */
-
-/* The line of the first string `token` in the entry being read, that of the entry if there is none (NULL). */
-static int line_of(const reader *r, const char *token) {
-    int line = 1, depth = 0, entry = WHOLE, entry_line = 1;
-    const size_t length = token ? strlen(token) : 0;
-    for (const char *c = r->text; *c; c++) {
-        if (*c == '\n') line++;
-        if (*c == '{' || *c == '[') depth++;
-        if (*c == '{' && depth == ENTRY_DEPTH && ++entry == r->entry) entry_line = line;
-        if (*c == '}' || *c == ']') depth--;
-        if (*c != '"') continue;
-        const char *start = ++c;
-        while (*c && *c != '"') c += *c == '\\' && c[1] ? 2 : 1;
-        const bool inside = (depth >= ENTRY_DEPTH ? entry : WHOLE) == r->entry;
-        if (inside && token && (size_t)(c - start) == length && strncmp(start, token, length) == 0)
-            return line;
-    }
-    return entry_line;
-}
-
-static lq_status refuse(const reader *r, const char *token, const char *text) {
-    return lq_fail(r->error, LQ_BAD_INPUT, "%s:%d: %s", r->path, line_of(r, token), text);
-}
-
-static lq_status refuse_type(const reader *r, const char *key, const char *accepted) {
-    return lq_fail(r->error, LQ_BAD_INPUT, "%s:%d: '%s' is not understood; accepted: %s", r->path,
-                   line_of(r, key), key, accepted);
-}
-
-static lq_status refuse_word(const reader *r, const char *what, const char *word, const char *accepted) {
-    return lq_fail(r->error, LQ_BAD_INPUT, "%s:%d: unknown %s '%s'; accepted: %s", r->path, line_of(r, word),
-                   what, word, accepted);
-}
-
-/* Every key of `object` is in the comma-separated list. */
-static lq_status check_keys(const reader *r, json_t *object, const char *accepted) {
-    const char *key;
-    json_t *value;
-    json_object_foreach(object, key, value) {
-        bool known = false;
-        for (const char *at = accepted; at && !known; at = strchr(at, ',')) {
-            at += strspn(at, ", ");
-            known = strlen(key) == strcspn(at, ",") && strncmp(at, key, strlen(key)) == 0;
-        }
-        if (!known) return refuse_word(r, "key", key, accepted);
-    }
-    return LQ_OK;
-}
-
-/* ------------------------------------------------------------------------------------ values */
-
-static lq_status read_number(const reader *r, json_t *object, const char *key, double lowest, double highest,
-                             double *value) {
-    json_t *item = json_object_get(object, key);
-    char accepted[64];
-    if (!item) return LQ_OK;
-    snprintf(accepted, sizeof accepted, "a number from %g to %g", lowest, highest);
-    if (!json_is_number(item)) return refuse_type(r, key, accepted);
-    *value = json_number_value(item);
-    return *value >= lowest && *value <= highest ? LQ_OK : refuse_type(r, key, accepted);
-}
-
-static lq_status read_budget(const reader *r, json_t *object, double *p99, double *max) {
+static lq_status read_budget(const lq_recipe_reader *r, json_t *object, double *p99, double *max) {
     json_t *budget = json_object_get(object, "budget");
     if (!budget) return LQ_OK;
-    if (!json_is_object(budget)) return refuse_type(r, "budget", "{\"p99\": E, \"max\": E}");
-    lq_status status = check_keys(r, budget, budget_keys);
+    if (!json_is_object(budget)) return lq_refuse_value(r, "budget", "{\"p99\": E, \"max\": E}");
+    lq_status status = lq_recipe_keys(r, budget, budget_keys);
     /* Stored halves alone are off by 2^-12 of values up to 1: less cannot be reached. */
     const double least = 0x1p-12;
-    if (status == LQ_OK) status = read_number(r, budget, "p99", least, 1.0, p99);
-    if (status == LQ_OK) status = read_number(r, budget, "max", least, 1.0, max);
+    if (status == LQ_OK) status = lq_recipe_number(r, budget, "p99", least, 1.0, p99);
+    if (status == LQ_OK) status = lq_recipe_number(r, budget, "max", least, 1.0, max);
     return status;
 }
 
-static lq_status read_choice(const reader *r, json_t *object, const char *key, const char *first,
-                             const char *second, int *choice) {
-    json_t *item = json_object_get(object, key);
-    char accepted[64];
-    if (!item) return LQ_OK;
-    snprintf(accepted, sizeof accepted, "%s, %s", first, second);
-    const char *word = json_string_value(item);
-    if (!word) return refuse_type(r, key, accepted);
-    *choice = strcmp(word, second) == 0;
-    return *choice || strcmp(word, first) == 0 ? LQ_OK : refuse_word(r, key, word, accepted);
-}
-
-static lq_status read_formats(const reader *r, json_t *formats) {
+static lq_status read_formats(const lq_recipe_reader *r, json_t *formats) {
     char accepted[128] = "";
     for (int c = 0; c < LQ_CONTAINERS; c++)
         snprintf(accepted + strlen(accepted), sizeof accepted - strlen(accepted), "%s%s", c > 0 ? ", " : "",
                  lq_container_name((lq_container)c));
-    if (!formats) return refuse(r, NULL, "no 'formats'; accepted: a list such as [\"ktx2\", \"dds\"]");
-    if (!json_is_array(formats) || json_array_size(formats) == 0) return refuse_type(r, "formats", accepted);
+    if (!formats) return lq_refuse(r, NULL, "no 'formats'; accepted: a list such as [\"ktx2\", \"dds\"]");
+    if (!json_is_array(formats) || json_array_size(formats) == 0)
+        return lq_refuse_value(r, "formats", accepted);
     for (size_t i = 0; i < json_array_size(formats); i++) {
         const char *word = json_string_value(json_array_get(formats, i));
-        if (!word) return refuse_type(r, "formats", accepted);
+        if (!word) return lq_refuse_value(r, "formats", accepted);
         bool known = false;
         for (int c = 0; c < LQ_CONTAINERS; c++)
             if (strcmp(word, lq_container_name((lq_container)c)) == 0)
                 r->recipe->containers[c] = known = true;
-        if (!known) return refuse_word(r, "format", word, accepted);
+        if (!known) return lq_refuse_word(r, "format", word, accepted);
     }
     return LQ_OK;
 }
 
-static lq_status read_layouts(const reader *r, json_t *layouts, lq_recipe_table *table) {
+static lq_status read_layouts(const lq_recipe_reader *r, json_t *layouts, lq_recipe_table *table) {
     if (!layouts) return LQ_OK;
-    if (!json_is_array(layouts)) return refuse_type(r, "layouts", "[\"belcour\", \"tm\"]");
+    if (!json_is_array(layouts)) return lq_refuse_value(r, "layouts", "[\"belcour\", \"tm\"]");
     for (size_t i = 0; i < json_array_size(layouts); i++) {
         const char *word = json_string_value(json_array_get(layouts, i));
         const char *masking = table->settings.masking == LQ_SEPARABLE ? "separable" : "correlated";
         lq_error why = {""};
-        if (!word) return refuse_type(r, "layouts", "belcour, tm");
+        if (!word) return lq_refuse_value(r, "layouts", "belcour, tm");
         const int layout = strcmp(word, "belcour") == 0 ? LQ_BELCOUR : strcmp(word, "tm") == 0 ? LQ_TM : -1;
-        if (layout < 0) return refuse_word(r, "layout", word, "belcour, tm");
+        if (layout < 0) return lq_refuse_word(r, "layout", word, "belcour, tm");
         if (lq_published_check((lq_layout)layout, table->kind->id,
                                table->kind->takes & LQ_TAKES_MASKING ? masking : NULL, table->axes,
                                table->kind->axis_count, &why) != LQ_OK)
-            return refuse(r, word, why.text);
+            return lq_refuse(r, word, why.text);
         table->layouts[layout] = 1;
     }
     return LQ_OK;
@@ -154,131 +71,143 @@ static lq_status read_layouts(const reader *r, json_t *layouts, lq_recipe_table 
 
 /* -------------------------------------------------------------------------------------- axes */
 
-static lq_status read_axis(const reader *r, const char *name, json_t *value, lq_recipe_table *table) {
+static lq_status read_axis(const lq_recipe_reader *r, const char *name, json_t *value,
+                           lq_recipe_table *table) {
     char accepted[LQ_MESSAGE_SIZE] = "";
     lq_error why = {""};
     lq_axis axis;
     for (int a = 0; a < table->kind->axis_count; a++) {
         const lq_axis_info *info = &table->kind->axes[a];
         if (strcmp(info->name, name) == 0) {
-            if (!json_is_string(value)) return refuse_type(r, name, "\"min:max:n\" or \"min:max:n:map\"");
+            if (!json_is_string(value)) return lq_refuse_value(r, name, "\"min:max:n\" or \"min:max:n:map\"");
             if (lq_axis_parse(&axis, name, json_string_value(value), &why) != LQ_OK)
-                return refuse(r, name, why.text);
+                return lq_refuse(r, name, why.text);
             lq_axis_free(&table->axes[a]);
             table->axes[a] = axis;
             if (axis.min >= info->lowest && axis.max <= info->highest) return LQ_OK;
             return lq_fail(r->error, LQ_BAD_INPUT, "%s:%d: %s from %g to %g; accepted: %g to %g", r->path,
-                           line_of(r, name), name, axis.min, axis.max, info->lowest, info->highest);
+                           lq_recipe_line(r, name), name, axis.min, axis.max, info->lowest, info->highest);
         }
         snprintf(accepted + strlen(accepted), sizeof accepted - strlen(accepted), "%s%s", a > 0 ? ", " : "",
                  info->name);
     }
-    return refuse_word(r, "axis", name, accepted);
+    return lq_refuse_word(r, "axis", name, accepted);
 }
 
-static lq_status read_axes(const reader *r, json_t *axes, lq_recipe_table *table) {
+static lq_status read_axes(const lq_recipe_reader *r, json_t *axes, lq_recipe_table *table) {
     const char *name;
     json_t *value;
     lq_error why = {""};
     if (lq_settings_axes(table->kind, &table->settings, table->axes, &why) != LQ_OK)
-        return refuse(r, NULL, why.text);
-    if (axes && !json_is_object(axes)) return refuse_type(r, "axes", "{\"mu\": \"0:1:32:sqrt\", ...}");
+        return lq_refuse(r, NULL, why.text);
+    if (axes && !json_is_object(axes)) return lq_refuse_value(r, "axes", "{\"mu\": \"0:1:32:sqrt\", ...}");
     json_object_foreach(axes, name, value) {
         lq_status status = read_axis(r, name, value, table);
         if (status != LQ_OK) return status;
     }
-    if (lq_texture_check(table->name, table->axes, table->kind->axis_count, table->kind->channel_count,
-                         &why) != LQ_OK)
-        return refuse(r, axes ? "axes" : NULL, why.text);
+    if (!table->factored && lq_texture_check(table->name, table->axes, table->kind->axis_count,
+                                             table->kind->channel_count, &why) != LQ_OK)
+        return lq_refuse(r, axes ? "axes" : NULL, why.text);
     return LQ_OK;
 }
 
 /* ------------------------------------------------------------------------------------ tables */
 
-static lq_status read_kind(const reader *r, json_t *item, lq_recipe_table *table) {
+static lq_status read_kind(const lq_recipe_reader *r, json_t *item, lq_recipe_table *table) {
     const char *id = json_string_value(json_object_get(item, "table"));
     lq_error why = {""};
-    if (!id) return refuse(r, NULL, "no 'table'; accepted: an id of lacquer list");
+    if (!id) return lq_refuse(r, NULL, "no 'table'; accepted: an id of lacquer list");
     table->kind = lq_kind_find(id, &why);
-    if (!table->kind) return refuse(r, id, why.text);
+    if (!table->kind) return lq_refuse(r, id, why.text);
     const char *name = json_string_value(json_object_get(item, "name"));
-    if (name && lq_name_check("name", name, &why) != LQ_OK) return refuse(r, "name", why.text);
+    if (name && lq_name_check("name", name, &why) != LQ_OK) return lq_refuse(r, "name", why.text);
     snprintf(table->name, sizeof table->name, "%s", name ? name : id);
     for (const lq_recipe_table *other = r->recipe->tables; other < table; other++)
         if (strcmp(other->name, table->name) == 0)
-            return refuse_word(r, "second table", table->name, "one of each name; set \"name\"");
+            return lq_refuse_word(r, "second table", table->name, "one of each name; set \"name\"");
     return LQ_OK;
 }
 
-static lq_status read_settings(const reader *r, json_t *item, lq_recipe_table *table) {
+static lq_status read_settings(const lq_recipe_reader *r, json_t *item, lq_recipe_table *table) {
     const lq_kind *kind = table->kind;
+    static const char *const scatterings[] = {"single", "multiple", NULL}, *const maskings[] = {"correlated",
+                                                                                                "separable",
+                                                                                                NULL};
     int scattering = LQ_MULTIPLE, masking = LQ_CORRELATED;
     table->settings = lq_settings_default();
     table->settings.ndf = r->recipe->ndf;
     table->settings.tolerance = kind->tolerance;
-    lq_status status = read_number(r, item, "tolerance", kind->finest_tolerance, LQ_LOOSEST_TOLERANCE,
-                                   &table->settings.tolerance);
-    if (status == LQ_OK) status = read_choice(r, item, "scattering", "single", "multiple", &scattering);
-    if (status == LQ_OK) status = read_choice(r, item, "masking", "correlated", "separable", &masking);
+    lq_status status = lq_recipe_number(r, item, "tolerance", kind->finest_tolerance, LQ_LOOSEST_TOLERANCE,
+                                        &table->settings.tolerance);
+    if (status == LQ_OK) status = lq_recipe_choice(r, item, "scattering", scatterings, &scattering);
+    if (status == LQ_OK) status = lq_recipe_choice(r, item, "masking", maskings, &masking);
     if (status != LQ_OK) return status;
     if (json_object_get(item, "scattering") && !(kind->takes & LQ_TAKES_SCATTERING))
-        return refuse(r, "scattering", "this table takes no 'scattering'; leave it out");
+        return lq_refuse(r, "scattering", "this table takes no 'scattering'; leave it out");
     if (json_object_get(item, "masking") && !(kind->takes & LQ_TAKES_MASKING))
-        return refuse(r, "masking", "this table takes no 'masking'; leave it out");
+        return lq_refuse(r, "masking", "this table takes no 'masking'; leave it out");
     table->settings.scattering = (lq_scattering)scattering;
     table->settings.masking = (lq_masking)masking;
     return LQ_OK;
 }
 
-static lq_status read_table(const reader *r, json_t *item, const double *budget) {
+static lq_status read_table(const lq_recipe_reader *r, json_t *item, const double *budget) {
     lq_recipe_table *table = &r->recipe->tables[r->recipe->count];
-    if (!json_is_object(item)) return refuse(r, "tables", "a table is written {\"table\": \"dfg\", ...}");
+    if (!json_is_object(item)) return lq_refuse(r, "tables", "a table is written {\"table\": \"dfg\", ...}");
     table->p99 = budget[0];
     table->max = budget[1];
-    table->line = line_of(r, NULL);
-    lq_status status = check_keys(r, item, table_keys);
+    table->line = lq_recipe_line(r, NULL);
+    lq_status status = lq_recipe_keys(r, item, table_keys);
     if (status == LQ_OK) status = read_kind(r, item, table);
     if (status == LQ_OK) r->recipe->count++;
     if (status == LQ_OK) status = read_settings(r, item, table);
+    json_t *pca = json_object_get(item, "pca");
+    table->factored = pca != NULL;
     if (status == LQ_OK) status = read_axes(r, json_object_get(item, "axes"), table);
+    if (status == LQ_OK && pca) status = lq_recipe_read_pca(r, pca, table);
     if (status == LQ_OK) status = read_layouts(r, json_object_get(item, "layouts"), table);
     if (status == LQ_OK) status = read_budget(r, item, &table->p99, &table->max);
+    if (table->pca_budget > 0.0 && table->pca_norm == LQ_PCA_MAX)
+        table->max = fmin(table->max, table->pca_budget);
+    if (table->pca_budget > 0.0 && table->pca_norm == LQ_PCA_P99)
+        table->p99 = fmin(table->p99, table->pca_budget);
     return status;
 }
 
-static lq_status read_ndf(reader *r, json_t *root) {
+static lq_status read_ndf(lq_recipe_reader *r, json_t *root) {
     const char *text = json_string_value(json_object_get(root, "ndf"));
     const lq_ndf *ndf = NULL;
     lq_error why = {""};
     if (json_object_get(root, "ndf") && !text)
-        return refuse_type(r, "ndf", "\"ggx\" and others of lacquer list");
+        return lq_refuse_value(r, "ndf", "\"ggx\" and others of lacquer list");
     lq_status status = lq_ndf_open(&ndf, text ? text : "ggx", &why);
-    if (status != LQ_OK) return lq_fail(r->error, status, "%s:%d: %s", r->path, line_of(r, text), why.text);
+    if (status != LQ_OK)
+        return lq_fail(r->error, status, "%s:%d: %s", r->path, lq_recipe_line(r, text), why.text);
     r->recipe->ndf = strdup(lq_ndf_text(ndf));
     lq_ndf_close(ndf);
     return r->recipe->ndf ? LQ_OK : lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
 }
 
-static lq_status read_root(reader *r, json_t *root) {
+static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     double budget[2] = {INFINITY, INFINITY}, points = POINTS, bytes = 0.0;
-    if (!json_is_object(root)) return refuse(r, NULL, "not a recipe; accepted is a JSON object");
+    if (!json_is_object(root)) return lq_refuse(r, NULL, "not a recipe; accepted is a JSON object");
     json_t *tables = json_object_get(root, "tables");
     const char *name = json_string_value(json_object_get(root, "name"));
-    lq_status status = check_keys(r, root, root_keys);
+    lq_status status = lq_recipe_keys(r, root, root_keys);
     if (status != LQ_OK) return status;
     if (!name || lq_name_check("name", name, r->error) != LQ_OK)
-        return refuse(r, "name", "'name' is missing or no name; accepted: letters, digits, '_', '-', '.'");
+        return lq_refuse(r, "name", "'name' is missing or no name; accepted: letters, digits, '_', '-', '.'");
     snprintf(r->recipe->name, LQ_NAME_SIZE, "%s", name);
     status = read_formats(r, json_object_get(root, "formats"));
     if (status == LQ_OK) status = read_ndf(r, root);
     if (status == LQ_OK) status = read_budget(r, root, &budget[0], &budget[1]);
-    if (status == LQ_OK) status = read_number(r, root, "points", 100.0, MOST_POINTS, &points);
-    if (status == LQ_OK) status = read_number(r, root, "max-bytes", 1.0, 1e12, &bytes);
+    if (status == LQ_OK) status = lq_recipe_number(r, root, "points", 100.0, MOST_POINTS, &points);
+    if (status == LQ_OK) status = lq_recipe_number(r, root, "max-bytes", 1.0, 1e12, &bytes);
     if (status != LQ_OK) return status;
     r->recipe->points = (size_t)points;
     r->recipe->max_bytes = (size_t)bytes;
     if (!json_is_array(tables) || json_array_size(tables) == 0 || json_array_size(tables) > LQ_RECIPE_TABLES)
-        return refuse_type(r, "tables", "a list of 1 to 32 tables");
+        return lq_refuse_value(r, "tables", "a list of 1 to 32 tables");
     for (size_t i = 0; i < json_array_size(tables) && status == LQ_OK; i++) {
         r->entry = (int)i;
         status = read_table(r, json_array_get(tables, i), budget);
@@ -308,7 +237,7 @@ lq_status lq_recipe_read(lq_recipe *recipe, const char *path, lq_error *error) {
     *recipe = (lq_recipe){0};
     char *text = read_text(path, error);
     if (!text) return LQ_IO;
-    reader r = {path, text, WHOLE, recipe, error};
+    lq_recipe_reader r = {path, text, LQ_RECIPE_WHOLE, recipe, error};
     json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, &wrong);
     lq_status status = root ? read_root(&r, root)
                             : lq_fail(error, LQ_FORMAT, "%s:%d: not JSON: %s", path, wrong.line, wrong.text);

@@ -4,7 +4,7 @@
 
 #include "pack/image.h"
 
-enum { LQ_RECIPE_TABLES = 32 };
+enum { LQ_RECIPE_TABLES = 32, LQ_PCA_TEXT = 512 };
 
 typedef struct lq_recipe_table {
     const lq_kind *kind;
@@ -14,6 +14,13 @@ typedef struct lq_recipe_table {
     double p99, max;           /* budget; INFINITY: none */
     int layouts[LQ_LAYOUTS];   /* published binaries to write too */
     int line;                  /* in the recipe's file */
+    bool factored;             /* then: */
+    lq_pca_options pca;        /* how; of a search, where it starts */
+    int channel;               /* of the table */
+    lq_pca_norm pca_norm;
+    double pca_budget; /* > 0, or bytes > 0: a search */
+    size_t pca_bytes;
+    char pca_text[LQ_PCA_TEXT]; /* the object, as the manifest and the cache name it */
 } lq_recipe_table;
 
 typedef struct lq_recipe {

@@ -4,6 +4,7 @@
  * argument and N its texels: the end points of an axis sit on texel centres. */
 #include "pack/source.h"
 
+#include "pack/factored.h"
 #include "pack/source_text.h"
 #include "tables/output.h"
 #include "tables/status.h"
@@ -116,8 +117,8 @@ static void print_comment(FILE *out, const lq_texture *texture, const lq_kind *k
     for (int c = 0; c < texture->channel_count; c++) fprintf(out, " %s", texture->channels[c]);
     for (int a = 0; a < texture->axis_count; a++) {
         const lq_axis *axis = &texture->axes[a];
-        fprintf(out, "\n *   %c: %s, %s, %g to %g, %zu texels", "xyz"[a], axis->name,
-                kind->axes[texture->from[a]].meaning, axis->min, axis->max, axis->size);
+        fprintf(out, "\n *   %c: %s, %s, %g to %g, %zu texels", "xyz"[a], axis -> name,
+                kind -> axes[texture->from[a]].meaning, axis->min, axis->max, axis->size);
         if (axis->exponent != 1.0) fprintf(out, ", value = min + (max - min) u^%g", axis->exponent);
     }
     fputs(" */\n", out);
@@ -170,8 +171,8 @@ static void print_c(FILE *out, const lq_texture *texture) {
             texture->image.channels, texture->channel_count);
 }
 
-lq_status lq_source_write(lq_language language, const lq_texture *textures, const lq_kind *const *kinds,
-                          size_t count, const char *path, lq_error *error) {
+lq_status lq_source_write(lq_language language, const lq_source_table *tables, size_t count, const char *path,
+                          lq_error *error) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -179,9 +180,12 @@ lq_status lq_source_write(lq_language language, const lq_texture *textures, cons
     fputs("/* Decode functions, made by lacquer " LQ_VERSION ". */\n", out);
     lq_print_helpers(out, language);
     for (size_t i = 0; i < count; i++) {
-        print_comment(out, &textures[i], kinds[i]);
-        if (language == LQ_C) print_c(out, &textures[i]);
-        else print_shader(out, &textures[i], language);
+        const lq_texture *texture = tables[i].texture;
+        if (!texture) lq_factored_source(out, language, tables[i].factored, tables[i].kind);
+        if (!texture) continue;
+        print_comment(out, texture, tables[i].kind);
+        if (language == LQ_C) print_c(out, texture);
+        else print_shader(out, texture, language);
     }
     fputs("\n#endif\n", out);
     lq_status status = fclose(out) == 0 ? lq_output_save(path, text, size, error)

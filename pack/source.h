@@ -9,8 +9,15 @@ typedef enum lq_language { LQ_GLSL, LQ_HLSL, LQ_C, LQ_LANGUAGES } lq_language;
 /* "decode.glsl", "decode.hlsl", "decode.h" */
 const char *lq_source_file(lq_language language);
 
-/* Write the functions of all textures to `path`; kinds[i] is what texture i holds. */
-lq_status lq_source_write(lq_language language, const lq_texture *textures, const lq_kind *const *kinds,
-                          size_t count, const char *path, lq_error *error);
+/* A table to decode: one texture, or where that is NULL the textures of its factors. */
+typedef struct lq_source_table {
+    const lq_kind *kind;
+    const lq_texture *texture;
+    const struct lq_factored_textures *factored;
+} lq_source_table;
+
+/* Write the functions of all tables to `path`. */
+lq_status lq_source_write(lq_language language, const lq_source_table *tables, size_t count, const char *path,
+                          lq_error *error);
 
 #endif

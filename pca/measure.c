@@ -1,5 +1,6 @@
 /* measure.c - errors of a factored table, as a GPU evaluates it. */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,6 +56,46 @@ lq_status lq_factored_errors(const lq_factored *factored, const lq_table *exact,
     summarise(exact, sizes, errors);
     free(sizes);
     return LQ_OK;
+}
+
+/* In [0,1), the same for the same seed, axis and place: splitmix64 (Steele et al. 2014). */
+static double uniform(uint64_t seed, uint64_t axis, uint64_t i) {
+    uint64_t z = (seed * 64 + axis) * 0x100000001b3u + i * 0x9e3779b97f4a7c15u + 0x243f6a8885a308d3u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+/* Random nodes, one in each of `count` equal parts of the index of the axis inside the box: where its nodes
+ * are dense there are more, as many as there is to get wrong. */
+static lq_status random_axis(const lq_axis *axis, double min, double max, size_t count, uint64_t seed,
+                             uint64_t a, lq_axis *made, lq_error *error) {
+    double nodes[256];
+    const double first = lq_axis_locate(axis, min), last = lq_axis_locate(axis, max);
+    if (axis->size == 1 || !(max > min))
+        return lq_axis_make(made, axis->name, min, min, 1, LQ_MAP_LINEAR, 1.0, error);
+    for (size_t i = 0; i < count; i++) {
+        const double index = first + (last - first) * ((double)i + uniform(seed, a, i)) / (double)count;
+        const size_t below = index >= (double)(axis->size - 1) ? axis->size - 2 : (size_t)index;
+        nodes[i] =
+            axis->nodes[below] + (index - (double)below) * (axis->nodes[below + 1] - axis->nodes[below]);
+    }
+    return lq_axis_make_custom(made, axis->name, nodes, count, error);
+}
+
+/* A solve serves every cosine and every tau (every n and kappa): more of those cost little. */
+static size_t nodes_of(const char *name, size_t nodes) {
+    const bool solved_for = strcmp(name, "alpha") == 0 || strcmp(name, "eta") == 0;
+    return solved_for ? nodes : 2 * nodes;
+}
+
+lq_status lq_random_axes(const lq_axis *axes, int axis_count, const double *min, const double *max,
+                         size_t nodes, size_t seed, lq_axis *made, lq_error *error) {
+    lq_status status = LQ_OK;
+    for (int a = 0; a < axis_count && status == LQ_OK; a++)
+        status = random_axis(&axes[a], min[a], max[a], nodes_of(axes[a].name, nodes), seed, (uint64_t)a,
+                             &made[a], error);
+    return status;
 }
 
 lq_status lq_nodes_within(const lq_table *table, const double *min, const double *max, lq_table **values,

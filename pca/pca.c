@@ -81,7 +81,7 @@ static lq_status check_critical(const lq_table *table, const lq_pca_options *opt
                    "the critical cosine needs mu and eta below 1 in one plane: separate the others");
 }
 
-static lq_status check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error) {
+lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error) {
     if (options->split_count < 0 || options->split_count >= LQ_MAX_PIECES)
         return lq_fail(error, LQ_BAD_INPUT, "%d splits; accepted are 0 to %d", options->split_count,
                        LQ_MAX_PIECES - 1);
@@ -105,7 +105,7 @@ lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_op
                        "options of another version; start from lq_pca_options_default()");
     if (channel < 0 || channel >= table->channel_count)
         return lq_fail(error, LQ_BAD_INPUT, "channel %d; the table has %d", channel, table->channel_count);
-    lq_status status = check_splits(table, options, error);
+    lq_status status = LQ_OK;
     const size_t entries = lq_table_entries(table);
     for (size_t i = 0; i < entries && status == LQ_OK; i++)
         if (!isfinite(table->channels[channel][i]))
@@ -132,8 +132,8 @@ static lq_status check_numbers(const lq_pca_options *options, lq_error *error) {
                    options->pairs, options->power, options->sweeps, LQ_MAX_PAIRS);
 }
 
-static lq_status check(const lq_table *table, int channel, const lq_pca_options *options, lq_error *error) {
-    lq_status status = lq_pca_check_table(table, channel, options, error);
+lq_status lq_pca_check_options(const lq_table *table, const lq_pca_options *options, lq_error *error) {
+    lq_status status = lq_pca_check_splits(table, options, error);
     if (status == LQ_OK) status = check_separations(table, options, error);
     if (status == LQ_OK) status = check_numbers(options, error);
     if (status == LQ_OK) status = check_value(table, options, error);
@@ -204,7 +204,8 @@ static lq_status add_piece(const lq_table *table, int channel, const lq_pca_opti
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error) {
     *factored = NULL;
-    lq_status status = check(table, channel, options, error);
+    lq_status status = lq_pca_check_options(table, options, error);
+    if (status == LQ_OK) status = lq_pca_check_table(table, channel, options, error);
     if (status == LQ_OK) status = lq_factored_start(table, channel, factored, error);
     for (int p = 0; p <= options->split_count && status == LQ_OK; p++)
         status = add_piece(table, channel, options, progress, *factored, error);

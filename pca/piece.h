@@ -15,7 +15,11 @@ lq_status lq_piece_grid(const lq_table *table, const lq_pca_options *options, co
 lq_status lq_piece_make(const lq_table *table, int channel, const lq_pca_options *options,
                         const lq_progress *progress, lq_piece *piece, lq_error *error);
 
-/* The table and its splits; then also how it is to be factored. */
+/* Whether a table of these axes can be factored so: its values are not looked at. Of a search: its splits. */
+lq_status lq_pca_check_options(const lq_table *table, const lq_pca_options *options, lq_error *error);
+lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error);
+
+/* The channel and its values. */
 lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_options *options,
                              lq_error *error);
 

@@ -315,7 +315,8 @@ lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options
     lq_pca_goal each = *goal;
     each.bytes /= (size_t)pieces;
     search s = {.table = table, .channel = channel, .goal = &each, .progress = progress, .error = error};
-    s.status = lq_pca_check_table(table, channel, start, error);
+    s.status = lq_pca_check_splits(table, start, error);
+    if (s.status == LQ_OK) s.status = lq_pca_check_table(table, channel, start, error);
     if (s.status == LQ_OK) s.status = lq_factored_start(table, channel, factored, error);
     for (s.piece = 0; s.piece < pieces && s.status == LQ_OK; s.piece++) {
         s.share = 1.0 / pieces;

@@ -204,7 +204,9 @@ static void run_glsl(const subject *s, float *values) {
     size_t size;
     lq_error error;
     char call[64], *text = calloc(1, 1 << 16), *source;
-    assert_int_equal(lq_source_write(LQ_GLSL, &s->texture, &s->kind, 1, at("decode.glsl"), &error), LQ_OK);
+    assert_int_equal(lq_source_write(LQ_GLSL, &(lq_source_table){s->kind, &s->texture, NULL}, 1,
+                                     at("decode.glsl"), &error),
+                     LQ_OK);
     source = read_whole(at("decode.glsl"), &size);
     arguments(s, call);
     sprintf(text,
@@ -231,7 +233,9 @@ static void run_hlsl(const subject *s, float *values) {
     size_t size;
     lq_error error;
     char call[64], command[2000];
-    assert_int_equal(lq_source_write(LQ_HLSL, &s->texture, &s->kind, 1, at("decode.hlsl"), &error), LQ_OK);
+    assert_int_equal(lq_source_write(LQ_HLSL, &(lq_source_table){s->kind, &s->texture, NULL}, 1,
+                                     at("decode.hlsl"), &error),
+                     LQ_OK);
     FILE *out = fopen(at("decode.hlsl"), "a");
     arguments(s, call);
     fprintf(out,
