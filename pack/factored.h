@@ -11,7 +11,7 @@ enum { LQ_BASES_PER_LAYER = 4 };
 /* The bases of one factor: RGBA half, base b in channel b % 4 of layer b / 4. */
 typedef struct lq_bases {
     int piece, factor;
-    char suffix[16]; /* of its files and arguments: "0_1", piece and factor */
+    char suffix[24]; /* of its files and arguments: "0_1", piece and factor */
     lq_image image;
 } lq_bases;
 
