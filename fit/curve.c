@@ -3,6 +3,7 @@
 
 #include "fit/bounce.h"
 #include "microfacet/lobe.h"
+#include "microfacet/root.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,28 +66,23 @@ static lq_status measure(lq_curve *curve, lq_error *error) {
     return LQ_OK;
 }
 
-/* phi^-1(alpha): v2 of it is v1(alpha). Illinois on ln alpha; *from and *to get ln v1 of both. */
-static double step_down(const lq_curve *curve, double alpha, double level) {
-    double high = log(alpha), low = fmax(high - 1.0, log(LQ_CURVE_LEAST) - 1.0);
-    double above = chebyshev(curve->v2, alpha) - level, below = level - chebyshev(curve->v2, exp(low));
+typedef struct crossing {
+    const double *series;
+    double value;
+} crossing;
+
+static double level_gap(const void *user, double log_alpha) {
+    const crossing *l = user;
+    return chebyshev(l->series, exp(log_alpha)) - l->value;
+}
+
+/* phi^-1(alpha): v2 of it is v1(alpha), both as ln. */
+static double step_down(const lq_curve *curve, double alpha, double value) {
+    const crossing l = {curve->v2, value};
+    const double high = log(alpha), low = fmax(high - 1.0, log(LQ_CURVE_LEAST) - 1.0);
+    const double above = level_gap(&l, high);
     if (above <= 0.0) return alpha;
-    for (int step = 0, side = 0; step < 60 && high - low > 1e-14; step++) {
-        const double at = (low * above + high * below) / (above + below);
-        const double gap = chebyshev(curve->v2, exp(at)) - level;
-        if (fabs(gap) < 2e-15 || at == low || at == high) return exp(at);
-        if (gap < 0.0) {
-            low = at;
-            below = -gap;
-            if (side < 0) above *= 0.5;
-            side = -1;
-        } else {
-            high = at;
-            above = gap;
-            if (side > 0) below *= 0.5;
-            side = 1;
-        }
-    }
-    return exp(0.5 * (low + high));
+    return exp(lq_root(level_gap, &l, low, level_gap(&l, low), high, above, 2e-15));
 }
 
 double lq_curve_limit(const lq_curve *curve, double alpha, double *error) {

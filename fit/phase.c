@@ -5,11 +5,10 @@
 
 #include <math.h>
 
-double lq_phase_variance(double g) {
-    if (g >= 1.0) return 0.0;
+static double variance_by(double g, int nodes) {
     lq_gauss rule;
     lq_panels panels;
-    lq_gauss_make(&rule, 24);
+    lq_gauss_make(&rule, nodes);
     lq_panels_start(&panels, 0.0, 1.57079632679489661923);
     lq_panels_grade(&panels, 0.0, 1.0 - g, 4.0);
     double sum = 0.0, moment = 0.0;
@@ -24,4 +23,10 @@ double lq_phase_variance(double g) {
             moment += weight * s * s;
         }
     return moment / sum;
+}
+
+double lq_phase_variance(double g, double *estimate) {
+    const double value = g < 1.0 ? variance_by(g, 24) : 0.0;
+    if (estimate) *estimate = g < 1.0 ? 1e-15 + 2.0 * fabs(variance_by(g, 16) - value) : 0.0;
+    return value;
 }

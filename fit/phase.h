@@ -3,7 +3,7 @@
 #define LACQUER_FIT_PHASE_H
 
 /* v_HG(g) = E[sin^2 theta] of the phase function over the forward hemisphere, normalised there; g in [0,1].
- */
-double lq_phase_variance(double g);
+ * *estimate (or NULL): of the absolute error, from a coarser rule. */
+double lq_phase_variance(double g, double *estimate);
 
 #endif

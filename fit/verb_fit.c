@@ -17,7 +17,8 @@ static const cli_option options[] = {
     {'o', "output", "FILE.json", "coefficients, covariance, errors, the paper's fit on the same points"},
     {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)"},
     {FAMILY, "family", "F", "parametric form, below (default: the last of its mapping)"},
-    {RANGE, "range", "A:B", "of alpha, or g (default 0.01:0.8; hg 0.05:0.99; transmission 0.02:0.4)"},
+    {RANGE, "range", "A:B",
+     "of alpha, or g (default 0.01:0.8, or 0.9 of f's pole; hg 0.05:0.99; transmission 0.02:0.4)"},
     {POINTS, "points", "N", "points over the range (default 256)"},
     {NORM, "norm", "max|rms", "what is made small: the largest relative error or the rms (default max)"},
     {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)"},
@@ -37,9 +38,11 @@ static void print_notes(FILE *out) {
         "  transmission  alpha_t, whose reflected lobe is as wide as the transmitted one (B18 eq. 10)\n"
         "  tail          kurtosis E[sin^4] / E[sin^2]^2 of the lobe of v1: 6/5 is the uniform hemisphere,\n"
         "                2 a Gaussian\n"
-        "or a table of what f is worth, against simulation:\n"
-        "  bounces       variance of 2, 4, 8 bounces: exact f, its fit, B18's f\n"
-        "  anisotropic   two bounces of anisotropic GGX, frames turned: f per axis (Y19)\n\nFamilies\n");
+        "or a table:\n"
+        "  bounces       variance of 2, 4, 8 bounces, simulated: exact f, its fit, B18's f\n"
+        "  anisotropic   two bounces of anisotropic GGX, frames turned: f per axis (Y19), simulated\n"
+        "  transmitted   variance of the transmitted lobe over eta, mu, alpha; B18 eq. 10, eq. "
+        "13\n\nFamilies\n");
     for (int i = 0; i < LQ_FAMILIES; i++) {
         const lq_family *family = lq_family_at(i);
         fprintf(out, "  %-12s %-11s %s\n", lq_mapping_name(family->mapping), family->name, family->formula);
@@ -52,7 +55,8 @@ static int run(int argc, char **argv);
 const cli_verb cli_verb_fit = {
     .name = "fit",
     .summary = "fit the mappings of roughness, phase function and transmission",
-    .usage = "MAPPING -o FILE.json [options]\nbounces|anisotropic [--samples N] [-o FILE.json]",
+    .usage = "MAPPING -o FILE.json [options]\nbounces|anisotropic [--samples N] [-o FILE.json]\ntransmitted "
+             "[-o FILE.json]",
     .options = options,
     .notes = print_notes,
     .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance.svg\n"
@@ -64,16 +68,14 @@ const cli_verb cli_verb_fit = {
 };
 
 static bool take_mapping(fit_request *request, const char *text) {
-    const char *names[LQ_MAPPINGS + 2] = {[LQ_MAPPINGS] = "bounces", "anisotropic"};
+    const char *names[LQ_MAPPINGS + 3] = {[LQ_MAPPINGS] = "bounces", "anisotropic", "transmitted"};
     for (int i = 0; i < LQ_MAPPINGS; i++) names[i] = lq_mapping_name((lq_mapping)i);
     if (request->has_mapping) {
         cli_message("unexpected '%s'; fit takes one MAPPING", text);
         return false;
     }
-    const int choice = cli_parse_choice("MAPPING", text, names, LQ_MAPPINGS + 2);
-    request->table = choice < LQ_MAPPINGS    ? FIT_NO_TABLE
-                     : choice == LQ_MAPPINGS ? FIT_BOUNCES
-                                             : FIT_ANISOTROPIC;
+    const int choice = cli_parse_choice("MAPPING", text, names, LQ_MAPPINGS + 3);
+    request->table = choice < LQ_MAPPINGS ? FIT_NO_TABLE : (fit_table)(FIT_BOUNCES + choice - LQ_MAPPINGS);
     request->mapping = request->table == FIT_NO_TABLE ? (lq_mapping)choice : LQ_MAP_VARIANCE;
     return request->has_mapping = choice >= 0;
 }
@@ -140,8 +142,8 @@ static bool parse(fit_request *request, int argc, char **argv) {
         if (id == CLI_BAD || !take(request, id, args.value)) return false;
     if (!request->has_mapping) cli_message("MAPPING is missing; see `lacquer fit --help`");
     else if (request->table != FIT_NO_TABLE && (request->report || request->texture || request->snippet))
-        cli_message("bounces and anisotropic take no --report, --texture or --snippet");
-    else if (request->table == FIT_NO_TABLE && request->samples)
+        cli_message("bounces, anisotropic and transmitted take no --report, --texture or --snippet");
+    else if ((request->table == FIT_NO_TABLE || request->table == FIT_TRANSMITTED) && request->samples)
         cli_message("--samples is for bounces and anisotropic");
     else if (request->table == FIT_ANISOTROPIC && strcmp(request->ndf_text, "ggx") != 0)
         cli_message("anisotropic knows no NDF but ggx");
@@ -150,7 +152,8 @@ static bool parse(fit_request *request, int argc, char **argv) {
         cli_message("--texture is for the mapping variance");
     else if (request->loss > 0.0 && !request->smallest_rms) cli_message("--loss needs --norm rms");
     else {
-        if (request->high == 0.0) {
+        request->pole_ends_range = request->high == 0.0;
+        if (request->pole_ends_range) {
             request->low = ranges[request->mapping][0];
             request->high = ranges[request->mapping][1];
         }
@@ -190,16 +193,21 @@ static void print(const fit_job *job) {
 static bool tabulate(const fit_job *job) {
     const fit_request *request = &job->request;
     const size_t samples = request->samples ? request->samples : 200000;
-    const bool bounces = request->table == FIT_BOUNCES;
-    json_t *rows = bounces ? fit_bounces(job, samples) : fit_anisotropic(job, samples);
+    static const char *const names[] = {"", "bounces", "anisotropic", "transmitted"};
+    json_t *rows = request->table == FIT_BOUNCES       ? fit_bounces(job, samples)
+                   : request->table == FIT_ANISOTROPIC ? fit_anisotropic(job, samples)
+                                                       : fit_transmitted(job);
     if (!rows) return false;
-    if (request->output) return fit_write_rows(job, bounces ? "bounces" : "anisotropic", samples, rows);
+    if (request->output)
+        return fit_write_rows(job, names[request->table], request->table == FIT_TRANSMITTED ? 0 : samples,
+                              rows);
     json_decref(rows);
     return true;
 }
 
 static bool work(fit_job *job) {
     const fit_request *request = &job->request;
+    if (request->table == FIT_TRANSMITTED) return tabulate(job);
     if (!fit_measure(job)) return false;
     if (request->table == FIT_ANISOTROPIC) return tabulate(job);
     const lq_fit_problem problem = {request->family, job->count,    job->x,

@@ -8,13 +8,13 @@
 
 #include <stdbool.h>
 
-typedef enum fit_table { FIT_NO_TABLE, FIT_BOUNCES, FIT_ANISOTROPIC } fit_table;
+typedef enum fit_table { FIT_NO_TABLE, FIT_BOUNCES, FIT_ANISOTROPIC, FIT_TRANSMITTED } fit_table;
 
 typedef struct fit_request {
     lq_mapping mapping;
-    fit_table table; /* instead of the fit of the mapping */
-    size_t samples;  /* of a table; 0: the default */
-    bool has_mapping, smallest_rms;
+    fit_table table;                                 /* instead of the fit of the mapping */
+    size_t samples;                                  /* of a table; 0: the default */
+    bool has_mapping, smallest_rms, pole_ends_range; /* the last: no --range was given */
     const char *family_name, *ndf_text, *output, *report, *texture, *snippet;
     double low, high, loss;
     size_t points;

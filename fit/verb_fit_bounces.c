@@ -40,14 +40,14 @@ typedef struct tally {
 } tally;
 
 /* Sums over a block in its order, then over blocks in theirs: the same bits for any number of threads. */
-static tally simulate(const lq_visible *visible, size_t samples) {
+static tally simulate(const lq_visible *visible, size_t row, size_t samples) {
     const size_t blocks = (samples + BLOCK - 1) / BLOCK;
     tally total = {{0}, {0}}, *each = calloc(blocks, sizeof *each);
     if (!each) return total;
 #pragma omp parallel for schedule(dynamic)
     for (size_t b = 0; b < blocks; b++)
         for (size_t i = b * BLOCK; i < samples && i < (b + 1) * BLOCK; i++) {
-            lq_stream stream = lq_stream_open(5, 0, i);
+            lq_stream stream = lq_stream_open(5, row, i);
             double mu = 1.0;
             for (int n = 1, k = 0; n <= BOUNCES; n++) {
                 mu = bounce(visible, mu, &stream);
@@ -93,7 +93,7 @@ json_t *fit_bounces(const fit_job *job, size_t samples) {
     bool going = visible != NULL;
     for (int a = 0; a < ALPHAS && going; a++) {
         lq_visible_make(visible, job->ndf, alphas[a], true);
-        all[a] = simulate(visible, samples);
+        all[a] = simulate(visible, (size_t)a, samples);
         going = bar.progress.report(bar.progress.user, (a + 1.0) / ALPHAS);
     }
     cli_progress_end(&bar);
@@ -159,14 +159,14 @@ static vec reflect(vec v, const surface *on, lq_stream *stream) {
 }
 
 /* Covariance in the projected disc after the given surfaces, one after the other, from normal incidence. */
-static disc scatter(const surface *surfaces, int count, size_t samples) {
+static disc scatter(const surface *surfaces, int count, size_t row, size_t samples) {
     const size_t blocks = (samples + BLOCK - 1) / BLOCK;
     disc total = {0}, *each = calloc(blocks, sizeof *each);
     if (!each) return total;
 #pragma omp parallel for schedule(dynamic)
     for (size_t b = 0; b < blocks; b++)
         for (size_t i = b * BLOCK; i < samples && i < (b + 1) * BLOCK; i++) {
-            lq_stream stream = lq_stream_open(6, 0, i);
+            lq_stream stream = lq_stream_open(6, row, i);
             vec v = {0.0, 0.0, 1.0};
             for (int n = 0; n < count; n++) v = reflect(v, &surfaces[n], &stream);
             each[b].xx += v.x * v.x;
@@ -224,8 +224,8 @@ json_t *fit_anisotropic(const fit_job *job, size_t samples) {
         const surface pair[2] = {surface_of(alpha[0], alpha[1], 0.0),
                                  surface_of(alpha[0], alpha[1], turns[i % TURNS] * pi / 180.0)};
         equal[i] = predict(&job->curve, pair);
-        found[i] = scatter(pair, 2, samples);
-        claimed[i] = scatter(&equal[i], 1, samples);
+        found[i] = scatter(pair, 2, (size_t)(2 * i), samples);
+        claimed[i] = scatter(&equal[i], 1, (size_t)(2 * i + 1), samples);
         going = bar.progress.report(bar.progress.user, (i + 1.0) / (PAIRS * TURNS));
     }
     cli_progress_end(&bar);

@@ -36,7 +36,7 @@ static double value_at(const fit_job *job, double at) {
     case LQ_MAP_VARIANCE:
         return lq_curve_f(&job->curve, at);
     case LQ_MAP_HG:
-        return lq_curve_f(&job->curve, lq_lobe_roughness(job->ndf, lq_phase_variance(at)));
+        return lq_curve_f(&job->curve, lq_lobe_roughness(job->ndf, lq_phase_variance(at, NULL)));
     default: {
         const double fourth = lq_lobe_fourth_moment(job->ndf, at, &variance);
         return fourth / (variance * variance);
@@ -56,7 +56,7 @@ static bool transmit(fit_job *job) {
                 double ratio, passed;
                 const double alpha =
                     job->request.low * pow(job->request.high / job->request.low, a / (ALPHAS - 1.0));
-                const double v = lq_transmitted_variance(job->ndf, alpha, etas[e], cosines[m], &passed);
+                const double v = lq_transmitted_variance(job->ndf, alpha, etas[e], cosines[m], &passed, NULL);
                 lq_transmission_scale(etas[e], cosines[m], &ratio);
                 if (passed < 0.9 || !isfinite(ratio)) continue;
                 add(job, lq_lobe_roughness(job->ndf, v), alpha, 1.0 / etas[e], cosines[m], ratio);
@@ -71,6 +71,9 @@ bool fit_measure(fit_job *job) {
         const lq_status status = lq_curve_make(&job->curve, job->ndf, &error);
         if (status != LQ_OK) return cli_fail_status(status, &error), false;
     }
+    /* The default range ends where f does. */
+    if (request->mapping == LQ_MAP_VARIANCE && request->pole_ends_range)
+        job->request.high = fmin(request->high, 0.9 * job->curve.pole);
     if (request->mapping == LQ_MAP_TRANSMISSION) return transmit(job);
     if (!room(job, request->points)) return false;
     for (size_t i = 0; i < request->points; i++) {

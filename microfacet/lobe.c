@@ -4,6 +4,7 @@
 
 #include "microfacet/ggx.h"
 #include "microfacet/panels.h"
+#include "microfacet/root.h"
 
 #include <math.h>
 
@@ -29,29 +30,22 @@ double lq_lobe_variance(const lq_ndf *ndf, double alpha) {
     return moment / sum;
 }
 
+typedef struct wanted {
+    const lq_ndf *ndf;
+    double variance;
+} wanted;
+
+static double variance_gap(const void *user, double alpha) {
+    const wanted *w = user;
+    return lq_lobe_variance(w->ndf, alpha) - w->variance;
+}
+
 double lq_lobe_roughness(const lq_ndf *ndf, double variance) {
     /* An NDF of one roughness has no other to offer: then GGX stands in. */
     if (ndf->alpha_max > 0.0 && ndf->alpha_min == ndf->alpha_max) ndf = &lq_ggx;
-    double low = 0.0, high = 1.0, below = variance, above = lq_lobe_variance(ndf, 1.0) - variance;
+    const wanted w = {ndf, variance};
+    const double above = variance_gap(&w, 1.0);
     if (variance <= 0.0) return 0.0;
     if (above <= 0.0) return 1.0;
-    /* The Illinois variant of regula falsi: an NDF may tabulate each roughness it is asked for. */
-    for (int step = 0, side = 0; step < 60 && high - low > 1e-14; step++) {
-        const double at = (low * above + high * below) / (above + below);
-        const double gap = lq_lobe_variance(ndf, at) - variance;
-        if (gap == 0.0 || at == low || at == high) return at;
-        if (gap < 0.0) {
-            low = at;
-            below = -gap;
-            if (side < 0) above *= 0.5;
-            side = -1;
-        } else {
-            high = at;
-            above = gap;
-            if (side > 0) below *= 0.5;
-            side = 1;
-        }
-        if (fabs(gap) < 1e-15) return at;
-    }
-    return 0.5 * (low + high);
+    return lq_root(variance_gap, &w, 0.0, -variance, 1.0, above, 1e-15);
 }
