@@ -189,18 +189,20 @@ static const cli_option options[] = {
     CLI_SETTINGS_OPTIONS,
     CLI_THREADS_OPTION,
     {OPTION_ORDERS, "orders", "N", "energy after exactly 1, 2, ... N hits instead (fgd only)"},
-    {OPTION_FROM, "from", "FILE", "interpolate a stored table instead of computing"},
+    {OPTION_FROM, "from", "FILE", "interpolate a stored table, or factors of pca, instead of computing"},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)"},
     {0},
 };
 
 static void print_notes(FILE *out) {
-    fprintf(out,
-            "Prints VALUE ± ERROR, where ERROR is an estimate never meant to be too small; a table of\n"
-            "several channels prints one line each. With --from it prints the interpolated VALUE.\n"
-            "--format csv without a point reads CSV from standard input (a header row of axis names in\n"
-            "any order, then numbers) and writes it back with columns value (or the channels) and error.\n"
-            "Exit 2: printed, but some estimate is above the tolerance.\n\n");
+    fprintf(
+        out,
+        "Prints VALUE ± ERROR, where ERROR is an estimate never meant to be too small; a table of\n"
+        "several channels prints one line each. With --from it prints the interpolated VALUE, of factors as\n"
+        "a GPU gets it: half floats, filter weights of 8 bits.\n"
+        "--format csv without a point reads CSV from standard input (a header row of axis names in\n"
+        "any order, then numbers) and writes it back with columns value (or the channels) and error.\n"
+        "Exit 2: printed, but some estimate is above the tolerance.\n\n");
     cli_print_axes(out);
 }
 
@@ -216,6 +218,7 @@ const cli_verb cli_verb_eval = {
                 "lacquer eval fgd mu=0.3 alpha=0.5 n=0.2 kappa=3.9 --orders 7\n"
                 "lacquer eval albedo mu=0.1 alpha=1 --masking separable --format json\n"
                 "printf 'alpha,mu\\n0.5,0.1\\n0.5,0.9\\n' | lacquer eval albedo --format csv\n"
-                "lacquer eval --from fgd.exr mu=0.3 alpha=0.5 n=0.2 kappa=3.9",
+                "lacquer eval --from fgd.exr mu=0.3 alpha=0.5 n=0.2 kappa=3.9\n"
+                "lacquer eval --from t01-factors.exr mu=0.3 alpha=0.2 eta=1.5 tau=0.5",
     .run = run,
 };

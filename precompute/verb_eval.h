@@ -15,11 +15,12 @@ typedef struct eval_axis {
     double lowest, highest; /* accepted, inclusive */
 } eval_axis;
 
-/* A table kind, computed exactly, or a stored table, interpolated. */
+/* A table kind, computed exactly; or a stored table, interpolated; or factors, as a GPU filters them. */
 typedef struct eval_source {
-    const lq_kind *kind; /* NULL for a stored table */
+    const lq_kind *kind; /* NULL for a file */
     lq_settings settings;
-    lq_table *table; /* NULL for a kind; owned */
+    lq_table *table; /* owned; one of these three */
+    lq_factored *factored;
     const char *path;
     int axis_count;
     eval_axis axes[LQ_MAX_AXES];

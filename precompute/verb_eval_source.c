@@ -21,8 +21,22 @@ void eval_source_kind(eval_source *source, const lq_kind *kind, const lq_setting
     for (int i = 0; i < kind->channel_count; i++) source->channels[i] = kind->channels[i];
 }
 
+static void factors_axes(eval_source *source) {
+    const lq_factored *factored = source->factored;
+    source->axis_count = factored->axis_count;
+    for (int i = 0; i < factored->axis_count; i++)
+        source->axes[i] = (eval_axis){factored->axes[i].name, factored->axes[i].min, factored->axes[i].max};
+    source->channel_count = 1;
+    source->channels[0] = "value";
+}
+
 lq_status eval_source_file(eval_source *source, const char *path, lq_error *error) {
     *source = (eval_source){.path = path};
+    /* A file of factors is also a table, of texels. */
+    if (lq_factored_read(&source->factored, path, NULL) == LQ_OK) {
+        factors_axes(source);
+        return LQ_OK;
+    }
     lq_status status = lq_table_read_exr(&source->table, path, error);
     if (status != LQ_OK) return status;
     const lq_table *table = source->table;
@@ -36,7 +50,9 @@ lq_status eval_source_file(eval_source *source, const char *path, lq_error *erro
 
 void eval_source_free(eval_source *source) {
     lq_table_free(source->table);
+    lq_factored_free(source->factored);
     source->table = NULL;
+    source->factored = NULL;
 }
 
 static const char *source_name(const eval_source *source) {
@@ -91,6 +107,10 @@ void eval_compute(const eval_source *source, const lq_settings *settings, const 
     if (source->kind) {
         result->status =
             lq_eval(source->kind, settings, point->at, result->values, &result->estimate, &result->error);
+        return;
+    }
+    if (source->factored) {
+        result->values[0] = lq_factored_lookup_gpu(source->factored, point->at);
         return;
     }
     for (int i = 0; i < source->channel_count; i++)

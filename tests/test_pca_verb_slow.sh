@@ -47,6 +47,10 @@ grep -q 'against the solver at random points' out || fail "errors are not off th
 below 0.01
 run 0 pca t01.exr --separate tau,eta --value beer --bases 3,4 --sweeps 8 --random 2 --threads 1 -o one.exr
 cmp -s joint.exr one.exr || fail "one thread gives other bits than all cores"
+"$lacquer" eval --from joint.exr mu=0.5 alpha=0.3 eta=1.5 tau=0.5 >out
+"$lacquer" eval transmission mu=0.5 alpha=0.3 eta=1.5 tau=0.5 >>out
+awk 'NR == 1 {got = $1} END {exit !(NR == 2 && got - $1 < 5e-3 && $1 - got < 5e-3)}' out ||
+    fail "eval --from factors: $(cat out)"
 run 0 info joint.exr
 grep -q 'pca-max' out || fail "the file does not state its error"
 
