@@ -100,10 +100,11 @@ static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed
 
 static json_t *describe_error(const lq_packed *packed) {
     const lq_measure *m = &packed->measure;
-    json_t *error = json_pack("{s:I, s:f, s:f, s:f, s:s}", "points", (json_int_t)m->points, "rms", m->rms,
-                              "p99", m->p99, "max", m->max, "includes",
-                              "half storage, 8 fractional bits of filter weights; off the grid, against the "
-                              "exact integral, for mu, alpha, tau >= 0.02");
+    json_t *error =
+        json_pack("{s:s, s:I, s:f, s:f, s:f, s:s}", "kind", m->relative ? "relative" : "absolute", "points",
+                  (json_int_t)m->points, "rms", m->rms, "p99", m->p99, "max", m->max, "includes",
+                  "half storage, 8 fractional bits of filter weights; off the grid, against the "
+                  "exact integral, for mu, alpha, tau >= 0.02");
     json_t *worst = json_object();
     for (int a = 0; a < packed->from->kind->axis_count; a++)
         json_object_set_new(worst, packed->from->axes[a].name, number(m->worst[a]));

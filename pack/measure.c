@@ -10,6 +10,8 @@
 
 enum { BATCH = 64 };
 
+#define POINT_AXIS "point"
+
 /* An additive recurrence: multiples of powers of 1/g, g the root of x^(d+1) = x + 1, modulo 1, are spread
  * evenly in d dimensions (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"). */
 static double golden(int dimensions) {
@@ -73,7 +75,7 @@ lq_status lq_measure_exact(const lq_kind *kind, const lq_settings *settings, con
     lq_axis axis;
     lq_settings opened = *settings;
     lq_status status =
-        lq_axis_make(&axis, "point", 0.0, (double)(count - 1), count, LQ_MAP_LINEAR, 0.0, error);
+        lq_axis_make(&axis, POINT_AXIS, 0.0, (double)(count - 1), count, LQ_MAP_LINEAR, 0.0, error);
     if (status != LQ_OK) return status;
     status = lq_table_create(exact, &axis, 1, kind->channels, kind->channel_count, error);
     lq_axis_free(&axis);
@@ -89,34 +91,6 @@ lq_status lq_measure_exact(const lq_kind *kind, const lq_settings *settings, con
 static int ascending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
-}
-
-lq_status lq_measure_texture(const lq_texture *texture, const lq_axis *axes, int axis_count,
-                             const lq_table *exact, lq_measure *measure, lq_error *error) {
-    const size_t count = lq_table_entries(exact);
-    const int channels = texture->channel_count;
-    double *errors = malloc(count * (size_t)channels * sizeof *errors), squares = 0.0;
-    if (!errors) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", texture->name);
-    *measure = (lq_measure){.points = count, .max = -1.0};
-    for (size_t i = 0; i < count; i++) {
-        double point[LQ_MAX_AXES], values[4];
-        lq_measure_point(axes, axis_count, i, point);
-        lq_texture_sample(texture, point, LQ_FILTER_BITS, values);
-        for (int c = 0; c < channels; c++) {
-            const double off = fabs(values[c] - (double)exact->channels[c][i]);
-            errors[i * (size_t)channels + (size_t)c] = off;
-            squares += off * off;
-            if (off <= measure->max) continue;
-            measure->max = off;
-            memcpy(measure->worst, point, sizeof point);
-        }
-    }
-    const size_t all = count * (size_t)channels;
-    qsort(errors, all, sizeof *errors, ascending);
-    measure->rms = sqrt(squares / (double)all);
-    measure->p99 = errors[(size_t)ceil(0.99 * (double)all) - 1];
-    free(errors);
-    return LQ_OK;
 }
 
 lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
@@ -136,12 +110,70 @@ lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings
     return status;
 }
 
-lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact,
-                              lq_measure *measure, lq_error *error) {
-    lq_pca_errors errors;
-    const lq_status status = lq_factored_errors(factored, exact, channel, &errors, error);
-    if (status != LQ_OK) return status;
-    *measure = (lq_measure){errors.points, errors.rms, errors.p99, errors.max, {0}};
-    memcpy(measure->worst, errors.worst, sizeof measure->worst);
+/* What is measured: values of so many channels at a point, against those of the exact table from `first` on.
+ */
+typedef struct subject {
+    void (*sample)(const void *of, const double *point, double *values);
+    const void *of;
+    int channels, first;
+    const lq_axis *axes; /* of the table */
+    int axis_count;
+    const lq_table *exact;
+    bool relative;
+} subject;
+
+static void point_of(const subject *s, size_t i, double *point) {
+    const lq_axis *axes = s->exact->axes;
+    if (s->exact->axis_count == 1 && strcmp(axes[0].name, POINT_AXIS) == 0)
+        lq_measure_point(s->axes, s->axis_count, i, point);
+    else lq_node_point(s->exact, i, point);
+}
+
+static lq_status measure(const subject *s, lq_measure *measured, lq_error *error) {
+    const size_t count = lq_table_entries(s->exact), all = count * (size_t)s->channels;
+    double *errors = malloc(all * sizeof *errors), squares = 0.0;
+    size_t worst = 0;
+    if (!errors) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu errors", all);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < count; i++) {
+        double point[LQ_MAX_AXES], values[4];
+        point_of(s, i, point);
+        s->sample(s->of, point, values);
+        for (int c = 0; c < s->channels; c++) {
+            const double exact = (double)s->exact->channels[s->first + c][i];
+            errors[i * (size_t)s->channels + (size_t)c] =
+                fabs(values[c] - exact) / (s->relative ? fabs(exact) : 1.0);
+        }
+    }
+    for (size_t i = 0; i < all; i++) {
+        squares += errors[i] * errors[i];
+        if (errors[i] > errors[worst]) worst = i;
+    }
+    *measured = (lq_measure){.points = count, .relative = s->relative, .max = errors[worst]};
+    point_of(s, worst / (size_t)s->channels, measured->worst);
+    qsort(errors, all, sizeof *errors, ascending);
+    measured->rms = sqrt(squares / (double)all);
+    measured->p99 = errors[(size_t)ceil(0.99 * (double)all) - 1];
+    free(errors);
     return LQ_OK;
+}
+
+static void sample_texture(const void *of, const double *point, double *values) {
+    lq_texture_sample(of, point, LQ_FILTER_BITS, values);
+}
+
+static void sample_factors(const void *of, const double *point, double *values) {
+    values[0] = lq_factored_lookup_gpu(of, point);
+}
+
+lq_status lq_measure_texture(const lq_texture *texture, const lq_axis *axes, int axis_count,
+                             const lq_table *exact, bool relative, lq_measure *measured, lq_error *error) {
+    const subject s = {sample_texture, texture, texture->channel_count, 0, axes, axis_count, exact, relative};
+    return measure(&s, measured, error);
+}
+
+lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact, bool relative,
+                              lq_measure *measured, lq_error *error) {
+    const subject s = {sample_factors, factored, 1, channel, exact->axes, exact->axis_count, exact, relative};
+    return measure(&s, measured, error);
 }

@@ -11,7 +11,8 @@ enum { LQ_FILTER_BITS = 8 }; /* fraction bits of the filter weights of GPUs */
 
 typedef struct lq_measure {
     size_t points;
-    double rms, p99, max;      /* absolute, over points and channels */
+    bool relative;             /* of the errors, which otherwise are absolute */
+    double rms, p99, max;      /* over points and channels */
     double worst[LQ_MAX_AXES]; /* the point of max */
 } lq_measure;
 
@@ -24,15 +25,16 @@ lq_status lq_measure_exact(const lq_kind *kind, const lq_settings *settings, con
                            size_t count, const lq_progress *progress, lq_table **exact, lq_error *error);
 
 lq_status lq_measure_texture(const lq_texture *texture, const lq_axis *axes, int axis_count,
-                             const lq_table *exact, lq_measure *measure, lq_error *error);
+                             const lq_table *exact, bool relative, lq_measure *measured, lq_error *error);
 
-/* For factors: the exact values at random nodes of the axes, stratified and denser where theirs are, from
- * LQ_MEASURE_FROM up and at least `points`: a solve serves many of them. */
+/* For factors and for tables whose solves are slow: the exact values at random nodes of the axes, stratified
+ * and denser where theirs are, from LQ_MEASURE_FROM up: the cube root of `points` of alpha and eta, twice as
+ * many of other axes, which a solve serves. */
 lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
                                 size_t points, size_t seed, const lq_progress *progress, lq_table **exact,
                                 lq_error *error);
 
-lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact,
-                              lq_measure *measure, lq_error *error);
+lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact, bool relative,
+                              lq_measure *measured, lq_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* recipe.c - reads a recipe and says, with the line, what is wrong in it. */
 #include "pack/recipe.h"
 
+#include "pack/mapping.h"
 #include "pack/recipe_text.h"
 #include "pack/texture.h"
 #include "tables/axis.h"
@@ -11,11 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS = 2000, MOST_POINTS = 1000000 };
+enum { POINTS = 2000, LEAST_POINTS = 100, MOST_POINTS = 1000000 };
 
 static const char root_keys[] = "name, about, ndf, formats, budget, points, max-bytes, tables";
 static const char table_keys[] =
-    "table, name, axes, ndf, tolerance, scattering, masking, budget, layouts, pca";
+    "table, mapping, name, axes, ndf, tolerance, scattering, masking, budget, points, layouts, pca";
 static const char budget_keys[] = "p99, max";
 
 static lq_status read_budget(const lq_recipe_reader *r, json_t *object, double *p99, double *max) {
@@ -98,8 +99,10 @@ static lq_status read_axes(const lq_recipe_reader *r, json_t *axes, lq_recipe_ta
     const char *name;
     json_t *value;
     lq_error why = {""};
-    if (lq_settings_axes(table->kind, &table->settings, table->axes, &why) != LQ_OK)
-        return lq_refuse(r, NULL, why.text);
+    const lq_status made = lq_is_mapping(table->kind)
+                               ? lq_kind_axes(table->kind, table->axes, &why)
+                               : lq_settings_axes(table->kind, &table->settings, table->axes, &why);
+    if (made != LQ_OK) return lq_refuse(r, NULL, why.text);
     if (axes && !json_is_object(axes)) return lq_refuse_value(r, "axes", "{\"mu\": \"0:1:32:sqrt\", ...}");
     json_object_foreach(axes, name, value) {
         lq_status status = read_axis(r, name, value, table);
@@ -115,9 +118,14 @@ static lq_status read_axes(const lq_recipe_reader *r, json_t *axes, lq_recipe_ta
 
 static lq_status read_kind(const lq_recipe_reader *r, json_t *item, lq_recipe_table *table) {
     const char *id = json_string_value(json_object_get(item, "table"));
+    const char *mapping = json_string_value(json_object_get(item, "mapping"));
     lq_error why = {""};
-    if (!id) return lq_refuse(r, NULL, "no 'table'; accepted: an id of lacquer list");
-    table->kind = lq_kind_find(id, &why);
+    if ((id != NULL) == (mapping != NULL))
+        return lq_refuse(r, NULL,
+                         "accepted: either a 'table', an id of lacquer list, or a 'mapping': f, "
+                         "f-inverse, sigma-g");
+    table->kind = id ? lq_kind_find(id, &why) : lq_mapping_find(mapping, &why);
+    if (!id) id = mapping;
     if (!table->kind) return lq_refuse(r, id, why.text);
     const char *name = json_string_value(json_object_get(item, "name"));
     if (name && lq_name_check("name", name, &why) != LQ_OK) return lq_refuse(r, "name", why.text);
@@ -151,11 +159,12 @@ static lq_status read_settings(const lq_recipe_reader *r, json_t *item, lq_recip
     return LQ_OK;
 }
 
-static lq_status read_table(const lq_recipe_reader *r, json_t *item, const double *budget) {
+static lq_status read_table(const lq_recipe_reader *r, json_t *item, const double *budget, size_t points) {
     lq_recipe_table *table = &r->recipe->tables[r->recipe->count];
     if (!json_is_object(item)) return lq_refuse(r, "tables", "a table is written {\"table\": \"dfg\", ...}");
     table->p99 = budget[0];
     table->max = budget[1];
+    table->points = points;
     table->line = lq_recipe_line(r, NULL);
     lq_status status = lq_recipe_keys(r, item, table_keys);
     if (status == LQ_OK) status = read_kind(r, item, table);
@@ -167,6 +176,8 @@ static lq_status read_table(const lq_recipe_reader *r, json_t *item, const doubl
     if (status == LQ_OK && pca) status = lq_recipe_read_pca(r, pca, table);
     if (status == LQ_OK) status = read_layouts(r, json_object_get(item, "layouts"), table);
     if (status == LQ_OK) status = read_budget(r, item, &table->p99, &table->max);
+    if (status == LQ_OK)
+        status = lq_recipe_count(r, item, "points", LEAST_POINTS, MOST_POINTS, &table->points);
     if (table->pca_budget > 0.0 && table->pca_norm == LQ_PCA_MAX)
         table->max = fmin(table->max, table->pca_budget);
     if (table->pca_budget > 0.0 && table->pca_norm == LQ_PCA_P99)
@@ -189,7 +200,8 @@ static lq_status read_ndf(lq_recipe_reader *r, json_t *root) {
 }
 
 static lq_status read_root(lq_recipe_reader *r, json_t *root) {
-    double budget[2] = {INFINITY, INFINITY}, points = POINTS, bytes = 0.0;
+    double budget[2] = {INFINITY, INFINITY}, bytes = 0.0;
+    size_t points = POINTS;
     if (!json_is_object(root)) return lq_refuse(r, NULL, "not a recipe; accepted is a JSON object");
     json_t *tables = json_object_get(root, "tables");
     const char *name = json_string_value(json_object_get(root, "name"));
@@ -201,16 +213,15 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     status = read_formats(r, json_object_get(root, "formats"));
     if (status == LQ_OK) status = read_ndf(r, root);
     if (status == LQ_OK) status = read_budget(r, root, &budget[0], &budget[1]);
-    if (status == LQ_OK) status = lq_recipe_number(r, root, "points", 100.0, MOST_POINTS, &points);
+    if (status == LQ_OK) status = lq_recipe_count(r, root, "points", LEAST_POINTS, MOST_POINTS, &points);
     if (status == LQ_OK) status = lq_recipe_number(r, root, "max-bytes", 1.0, 1e12, &bytes);
     if (status != LQ_OK) return status;
-    r->recipe->points = (size_t)points;
     r->recipe->max_bytes = (size_t)bytes;
     if (!json_is_array(tables) || json_array_size(tables) == 0 || json_array_size(tables) > LQ_RECIPE_TABLES)
         return lq_refuse_value(r, "tables", "a list of 1 to 32 tables");
     for (size_t i = 0; i < json_array_size(tables) && status == LQ_OK; i++) {
         r->entry = (int)i;
-        status = read_table(r, json_array_get(tables, i), budget);
+        status = read_table(r, json_array_get(tables, i), budget, points);
     }
     return status;
 }

@@ -12,6 +12,7 @@ typedef struct lq_recipe_table {
     lq_axis axes[LQ_MAX_AXES]; /* one per axis of the kind */
     lq_settings settings;      /* ndf points into the recipe */
     double p99, max;           /* budget; INFINITY: none */
+    size_t points;             /* where the error is measured, at least */
     int layouts[LQ_LAYOUTS];   /* published binaries to write too */
     int line;                  /* in the recipe's file */
     bool factored;             /* then: */
@@ -27,7 +28,6 @@ typedef struct lq_recipe {
     char name[LQ_NAME_SIZE];
     char *ndf;
     bool containers[LQ_CONTAINERS];
-    size_t points;    /* where the error is measured, per table */
     size_t max_bytes; /* of all textures; 0: no bound */
     size_t count;
     lq_recipe_table tables[LQ_RECIPE_TABLES];

@@ -139,7 +139,7 @@ static int pack(const pack_request *r, const lq_recipe *recipe, lq_packed *packe
     lq_folder_abandon(&probe);
     for (size_t i = 0; i < recipe->count; i++) {
         packed[i].from = &recipe->tables[i];
-        status = pack_make(r, recipe, &packed[i], &error);
+        status = pack_make(r, &packed[i], &error);
         if (status != LQ_OK) return cli_fail_status(status, &error);
     }
     const int code = judge(r, recipe, packed);
@@ -179,10 +179,9 @@ static const cli_option options[] = {
 static void print_notes(FILE *out) {
     fprintf(out,
             "DIR gets the texture of each table, or those of its factors, in every format asked for, decode\n"
-            "source in GLSL, HLSL and C,\n"
-            "and " LQ_MANIFEST ": how each file was made and the error it was measured to have, with half\n"
-            "storage and 8-bit filter weights. DIR is complete or untouched. Exit 2: a budget was missed.\n"
-            "What a recipe may hold: docs/packs.md; those shipped: recipes/.\n\n");
+            "source in GLSL, HLSL and C, and " LQ_MANIFEST ": how each file was made and the error it was\n"
+            "measured to have, with half storage and 8-bit filter weights. DIR is complete or untouched.\n"
+            "Exit 2: a budget was missed. What a recipe may hold: docs/packs.md; those shipped: recipes/.\n\n");
 }
 
 const cli_verb cli_verb_pack = {
@@ -191,7 +190,7 @@ const cli_verb cli_verb_pack = {
     .usage = "RECIPE.json [options] -o DIR",
     .options = options,
     .notes = print_notes,
-    .examples = "lacquer pack recipes/dfg.json -o dfg\n"
+    .examples = "lacquer pack recipes/realtime.json -o realtime\n"
                 "lacquer pack recipes/dfg.json -o textures --cache /tmp/lacquer",
     .run = run,
 };

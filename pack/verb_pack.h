@@ -14,6 +14,6 @@ typedef struct pack_request {
 } pack_request;
 
 /* The table of packed->from: computed or found in the cache, made into textures, measured. */
-lq_status pack_make(const pack_request *request, const lq_recipe *recipe, lq_packed *packed, lq_error *error);
+lq_status pack_make(const pack_request *request, lq_packed *packed, lq_error *error);
 
 #endif

@@ -1,12 +1,14 @@
 /* verb_pack_make.c - the tables of a pack: computed or found in the cache, factored, measured. */
 #include "cli/progress.h"
 #include "pack/cache.h"
+#include "pack/mapping.h"
 #include "pack/verb_pack.h"
 #include "pca/factors.h"
 #include "pca/measure.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ------------------------------------------------------------------------- tables and their checks */
 
@@ -33,17 +35,26 @@ typedef struct want {
     size_t points, seed;
 } want;
 
+/* Whether it is measured where solves are shared: of factors, whose points should be many, and of
+ * dielectrics, whose solves are slow. */
+static bool on_grid(const lq_recipe_table *t) {
+    return t->factored || (t->kind->interface && strcmp(t->kind->interface, "dielectric") == 0);
+}
+
 static lq_status compute(const lq_recipe_table *t, const want *w, const lq_settings *settings,
                          lq_table **table, lq_error *error) {
     cli_progress bar;
     char label[64];
     snprintf(label, sizeof label, w->what ? "%s, %s" : "%s", t->name, w->what);
     cli_progress_begin(&bar, label);
+    const bool mapping = lq_is_mapping(t->kind);
     lq_status status =
-        !w->points    ? lq_precompute(t->kind, settings, t->axes, &bar.progress, table, error)
-        : t->factored ? lq_measure_exact_grid(t->kind, settings, t->axes, w->points, w->seed, &bar.progress,
-                                              table, error)
-                      : lq_measure_exact(t->kind, settings, t->axes, w->points, &bar.progress, table, error);
+        mapping && !w->points ? lq_mapping_table(t->kind, settings, t->axes, table, error)
+        : mapping             ? lq_mapping_exact(t->kind, settings, t->axes, w->points, table, error)
+        : !w->points          ? lq_precompute(t->kind, settings, t->axes, &bar.progress, table, error)
+        : on_grid(t) ? lq_measure_exact_grid(t->kind, settings, t->axes, w->points, w->seed, &bar.progress,
+                                             table, error)
+                     : lq_measure_exact(t->kind, settings, t->axes, w->points, &bar.progress, table, error);
     cli_progress_end(&bar);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
 }
@@ -53,7 +64,7 @@ static lq_status obtain(const pack_request *r, const lq_recipe_table *t, const w
                         lq_error *error) {
     char what[64];
     if (!w->points) snprintf(what, sizeof what, "table");
-    else if (t->factored) snprintf(what, sizeof what, "grid-%zu-%zu", w->points, w->seed);
+    else if (on_grid(t)) snprintf(what, sizeof what, "grid-%zu-%zu", w->points, w->seed);
     else snprintf(what, sizeof what, "points-%zu", w->points);
     char *key = write_key(r, t, what);
     if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
@@ -82,10 +93,10 @@ static lq_status search_values(void *user, const double *min, const double *max,
     return lq_nodes_within(user, min, max, values, error);
 }
 
-static lq_status factor(const pack_request *r, const lq_recipe *recipe, lq_packed *packed, lq_error *error) {
+static lq_status factor(const pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const bool searches = t->pca_budget > 0.0 || t->pca_bytes > 0;
-    const want search = {"search", recipe->points, SEARCH_SEED};
+    const want search = {"search", t->points, SEARCH_SEED};
     lq_pca_goal goal = {sizeof goal, t->pca_norm, MARGIN * t->pca_budget, t->pca_bytes, search_values, NULL};
     lq_table *exact = NULL;
     lq_pca_try *tries = NULL;
@@ -108,21 +119,20 @@ static lq_status factor(const pack_request *r, const lq_recipe *recipe, lq_packe
 }
 
 /* The factors, and the table where they or a binary need it. */
-static lq_status obtain_factors(const pack_request *r, const lq_recipe *recipe, lq_packed *packed,
-                                lq_error *error) {
+static lq_status obtain_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0};
     char what[LQ_PCA_TEXT + 64];
     bool binary = false;
     lq_status status = LQ_OK;
-    snprintf(what, sizeof what, "factors-%zu %s", recipe->points, t->pca_text);
+    snprintf(what, sizeof what, "factors-%zu %s", t->points, t->pca_text);
     char *key = write_key(r, t, what);
     if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
     for (int l = 0; l < LQ_LAYOUTS; l++) binary = binary || t->layouts[l];
     packed->factored = lq_cache_find_factored(r->cache, key);
     if (!packed->factored || binary) status = obtain(r, t, &whole, &packed->table, error);
     if (status == LQ_OK && !packed->factored) {
-        status = factor(r, recipe, packed, error);
+        status = factor(r, packed, error);
         if (status == LQ_OK) status = lq_cache_store_factored(r->cache, key, packed->factored, error);
     }
     free(key);
@@ -131,36 +141,34 @@ static lq_status obtain_factors(const pack_request *r, const lq_recipe *recipe, 
 
 /* ------------------------------------------------------------------------------------------ a table */
 
-static lq_status make_texture(const pack_request *r, const lq_recipe *recipe, lq_packed *packed,
-                              lq_error *error) {
+static lq_status make_texture(const pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
-    const want whole = {0}, check = {"check", recipe->points, 0};
+    const want whole = {0}, check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
     lq_status status = obtain(r, t, &whole, &packed->table, error);
     if (status == LQ_OK) status = lq_texture_make(&packed->texture, packed->table, t->name, error);
     if (status == LQ_OK) status = obtain(r, t, &check, &exact, error);
     if (status == LQ_OK)
-        status = lq_measure_texture(&packed->texture, t->axes, t->kind->axis_count, exact, &packed->measure,
-                                    error);
+        status = lq_measure_texture(&packed->texture, t->axes, t->kind->axis_count, exact,
+                                    lq_is_mapping(t->kind), &packed->measure, error);
     lq_table_free(exact);
     return status;
 }
 
-static lq_status make_factors(const pack_request *r, const lq_recipe *recipe, lq_packed *packed,
-                              lq_error *error) {
+static lq_status make_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
-    const want check = {"check", recipe->points, CHECK_SEED};
+    const want check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
-    lq_status status = obtain_factors(r, recipe, packed, error);
+    lq_status status = obtain_factors(r, packed, error);
     if (status == LQ_OK) status = lq_factored_layout(&packed->factors, packed->factored, t->name, error);
     if (status == LQ_OK) status = obtain(r, t, &check, &exact, error);
     if (status == LQ_OK)
-        status = lq_measure_factored(packed->factored, t->channel, exact, &packed->measure, error);
+        status = lq_measure_factored(packed->factored, t->channel, exact, lq_is_mapping(t->kind),
+                                     &packed->measure, error);
     lq_table_free(exact);
     return status;
 }
 
-lq_status pack_make(const pack_request *r, const lq_recipe *recipe, lq_packed *packed, lq_error *error) {
-    return packed->from->factored ? make_factors(r, recipe, packed, error)
-                                  : make_texture(r, recipe, packed, error);
+lq_status pack_make(const pack_request *r, lq_packed *packed, lq_error *error) {
+    return packed->from->factored ? make_factors(r, packed, error) : make_texture(r, packed, error);
 }

@@ -8,7 +8,7 @@
 #include "pca/measure.h"
 #include "tables/status.h"
 
-static void node_point(const lq_table *table, size_t entry, double *x) {
+void lq_node_point(const lq_table *table, size_t entry, double *x) {
     for (int a = 0; a < table->axis_count; a++) {
         x[a] = table->axes[a].nodes[entry % table->axes[a].size];
         entry /= table->axes[a].size;
@@ -28,7 +28,7 @@ static void summarise(const lq_table *exact, float *sizes, lq_pca_errors *errors
         squares += (double)sizes[i] * (double)sizes[i];
         if (sizes[i] > sizes[worst]) worst = i;
     }
-    node_point(exact, worst, errors->worst);
+    lq_node_point(exact, worst, errors->worst);
     errors->max = (double)sizes[worst];
     errors->rms = sqrt(squares / (double)errors->points);
     qsort(sizes, errors->points, sizeof *sizes, by_size);
@@ -50,7 +50,7 @@ lq_status lq_factored_errors(const lq_factored *factored, const lq_table *exact,
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < errors->points; i++) {
         double x[LQ_MAX_AXES];
-        node_point(exact, i, x);
+        lq_node_point(exact, i, x);
         sizes[i] = (float)fabs(lq_factored_lookup_gpu(factored, x) - (double)exact->channels[channel][i]);
     }
     summarise(exact, sizes, errors);

@@ -4,6 +4,9 @@
 
 #include "lacquer.h"
 
+/* The coordinates of an entry of a table. */
+void lq_node_point(const lq_table *table, size_t entry, double *x);
+
 /* The nodes of a table inside a box, as a table. */
 lq_status lq_nodes_within(const lq_table *table, const double *min, const double *max, lq_table **values,
                           lq_error *error);
