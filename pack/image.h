@@ -47,4 +47,8 @@ lq_status lq_image_to_half(lq_image *image, const char *name, lq_error *error);
 lq_status lq_image_write(const lq_image *image, lq_container container, const char *name, const char *path,
                          lq_error *error);
 
+/* The texels of a file into an image of half floats whose sizes are known. LQ_FORMAT where the file says it
+ * has others, or does not hold them. */
+lq_status lq_image_read(lq_image *image, lq_container container, const char *path, lq_error *error);
+
 #endif

@@ -1,7 +1,10 @@
 /* manifest.c - manifest.json of a pack. */
 #include "pack/manifest.h"
 
+#include "pack/folder.h"
 #include "pack/source.h"
+#include "pca/factors_json.h"
+#include "tables/input.h"
 #include "tables/output.h"
 #include "tables/status.h"
 
@@ -10,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 size_t lq_packed_images(const lq_packed *packed) {
     return packed->factored ? packed->factors.count : 1;
@@ -48,7 +52,20 @@ static json_t *describe_axis(const lq_axis *axis, int a) {
                      "u = ((value - min) / (max - min))^(1 / exponent), then u (1 - 1/texels) + 0.5/texels");
 }
 
-static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image) {
+/* Of a file that is there already: with it a reader knows that the file is as it was made. */
+static void add_checksum(json_t *item, const char *folder, const char *name) {
+    char path[PATH_MAX + 128], text[16], *bytes;
+    size_t size;
+    lq_error ignored = {""};
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (lq_input_read(path, &bytes, &size, &ignored) != LQ_OK) return;
+    snprintf(text, sizeof text, "%08lx", crc32_z(0, (const unsigned char *)bytes, size));
+    json_object_set_new(item, "crc32", json_string(text));
+    free(bytes);
+}
+
+static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image,
+                              const char *folder) {
     static const char *const hints[LQ_CONTAINERS] = {
         "KTX 2.0",
         "KTX 2.0, zstd",
@@ -62,7 +79,9 @@ static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, 
     for (int c = 0; c < LQ_CONTAINERS; c++) {
         if (!recipe->containers[c]) continue;
         snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
-        json_array_append_new(files, json_pack("{s:s, s:s}", "file", name, "format", hints[c]));
+        json_t *item = json_pack("{s:s, s:s}", "file", name, "format", hints[c]);
+        add_checksum(item, folder, name);
+        json_array_append_new(files, item);
     }
     return files;
 }
@@ -78,7 +97,7 @@ static void add_binaries(const lq_packed *packed, json_t *files) {
 }
 
 /* Each factor: the argument of the decode function, its axes and its files. */
-static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed) {
+static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed, const char *folder) {
     json_t *textures = json_array();
     for (size_t i = 0; i < packed->factors.count; i++) {
         const lq_bases *bases = &packed->factors.bases[i];
@@ -93,7 +112,7 @@ static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed
                                         (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count,
                                         "layers", (json_int_t)bases->image.layers, "layout",
                                         "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
-                                        describe_files(recipe, packed, i)));
+                                        describe_files(recipe, packed, i, folder)));
     }
     return textures;
 }
@@ -125,10 +144,28 @@ static json_t *describe_origin(const lq_packed *packed) {
     return made;
 }
 
-static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed) {
+/* Which products of bases make up a value: what the decode functions do, for programs. A text of its own: it
+ * keeps every bit, and its lists of numbers stay on one line. */
+static json_t *describe_structure(const lq_factored *factored) {
+    char *text = lq_factored_to_json(factored);
+    json_t *structure = json_string(text ? text : "");
+    free(text);
+    return structure;
+}
+
+/* Axes of one value, which the texture has not. */
+static json_t *describe_fixed(const lq_recipe_table *from) {
+    json_t *fixed = json_object();
+    for (int a = 0; a < from->kind->axis_count; a++)
+        if (from->axes[a].size == 1)
+            json_object_set_new(fixed, from->axes[a].name, number(from->axes[a].min));
+    return fixed;
+}
+
+static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, const char *folder) {
     const lq_texture *texture = &packed->texture;
     const lq_recipe_table *from = packed->from;
-    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0);
+    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0, folder);
     char function[64];
     snprintf(function, sizeof function, "lacquer_%s",
              packed->factored ? packed->factors.name : texture->name);
@@ -137,7 +174,8 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed) 
                               function, "bytes", (json_int_t)lq_packed_bytes(packed));
     if (packed->factored) {
         json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
-        json_object_set_new(table, "textures", describe_factors(recipe, packed));
+        json_object_set_new(table, "textures", describe_factors(recipe, packed, folder));
+        json_object_set_new(table, "structure", describe_structure(packed->factored));
     } else {
         json_t *axes = json_array(), *channels = json_array();
         for (int a = 0; a < texture->axis_count; a++)
@@ -145,6 +183,7 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed) 
         for (int c = 0; c < texture->channel_count; c++)
             json_array_append_new(channels, json_string(texture->channels[c]));
         json_object_set_new(table, "axes", axes);
+        json_object_set_new(table, "fixed", describe_fixed(from));
         json_object_set_new(table, "channels", channels);
     }
     add_binaries(packed, files);
@@ -154,12 +193,14 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed) 
     return table;
 }
 
-lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *path,
+lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *folder,
                             lq_error *error) {
+    char path[PATH_MAX + 64];
+    snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
     json_t *tables = json_array(), *sources = json_array();
     size_t bytes = 0;
     for (size_t i = 0; i < recipe->count; i++) {
-        json_array_append_new(tables, describe_table(recipe, &packed[i]));
+        json_array_append_new(tables, describe_table(recipe, &packed[i], folder));
         bytes += lq_packed_bytes(&packed[i]);
     }
     for (int l = 0; l < LQ_LANGUAGES; l++)

@@ -26,7 +26,8 @@ void lq_packed_array(const lq_packed *packed, size_t i, char *array, size_t size
 /* Of all its images, as a GPU holds them. */
 size_t lq_packed_bytes(const lq_packed *packed);
 
-lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *path,
+/* Into a folder that holds all the files: their checksums are taken. */
+lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *folder,
                             lq_error *error);
 
 #endif

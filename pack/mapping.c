@@ -53,7 +53,7 @@ bool lq_is_mapping(const lq_kind *kind) {
     return kind >= mappings && kind < mappings + MAPPINGS;
 }
 
-static double value_at(const lq_kind *kind, const lq_curve *curve, double x) {
+double lq_mapping_value(const lq_kind *kind, const lq_curve *curve, double x) {
     if (kind == &mappings[0]) return lq_curve_f(curve, x);
     if (kind == &mappings[1]) return lq_curve_inverse(curve, x);
     return lq_curve_f(curve, lq_lobe_roughness(curve->ndf, lq_phase_variance(x, NULL)));
@@ -62,7 +62,7 @@ static double value_at(const lq_kind *kind, const lq_curve *curve, double x) {
 static lq_status fill(const lq_kind *kind, const lq_curve *curve, lq_table *table, lq_error *error) {
     const lq_axis *axis = &table->axes[0];
     for (size_t i = 0; i < axis->size; i++) {
-        const double value = value_at(kind, curve, axis->nodes[i]);
+        const double value = lq_mapping_value(kind, curve, axis->nodes[i]);
         if (!isfinite(value))
             return lq_fail(error, LQ_BAD_INPUT, "%s: %g at %s = %g; choose a range without it", kind->id,
                            value, axis->name, axis->nodes[i]);

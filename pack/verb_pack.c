@@ -86,14 +86,12 @@ static lq_status write_sources(const lq_recipe *recipe, const lq_packed *packed,
 static lq_status write_all(const lq_recipe *recipe, const lq_packed *packed, const char *target,
                            lq_error *error) {
     lq_folder folder;
-    char path[PATH_MAX + 64];
     lq_status status = lq_folder_open(&folder, target, error);
     if (status != LQ_OK) return status;
     for (size_t i = 0; i < recipe->count && status == LQ_OK; i++)
         status = write_one(recipe, &packed[i], folder.staging, error);
     if (status == LQ_OK) status = write_sources(recipe, packed, folder.staging, error);
-    snprintf(path, sizeof path, "%s/%s", folder.staging, LQ_MANIFEST);
-    if (status == LQ_OK) status = lq_manifest_write(recipe, packed, path, error);
+    if (status == LQ_OK) status = lq_manifest_write(recipe, packed, folder.staging, error);
     if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
     if (status == LQ_OK) status = lq_folder_commit(&folder, error);
     if (status != LQ_OK) lq_folder_abandon(&folder);
@@ -177,11 +175,12 @@ static const cli_option options[] = {
 };
 
 static void print_notes(FILE *out) {
-    fprintf(out,
-            "DIR gets the texture of each table, or those of its factors, in every format asked for, decode\n"
-            "source in GLSL, HLSL and C, and " LQ_MANIFEST ": how each file was made and the error it was\n"
-            "measured to have, with half storage and 8-bit filter weights. DIR is complete or untouched.\n"
-            "Exit 2: a budget was missed. What a recipe may hold: docs/packs.md; those shipped: recipes/.\n\n");
+    fprintf(
+        out,
+        "DIR gets the texture of each table, or those of its factors, in every format asked for, decode\n"
+        "source in GLSL, HLSL and C, and " LQ_MANIFEST ": how each file was made and the error it was\n"
+        "measured to have, with half storage and 8-bit filter weights. DIR is complete or untouched.\n"
+        "Exit 2: a budget was missed. What a recipe may hold: docs/packs.md; those shipped: recipes/.\n\n");
 }
 
 const cli_verb cli_verb_pack = {

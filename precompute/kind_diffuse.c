@@ -1,6 +1,7 @@
 /* `diffuse-transmission`, `diffuse-reflection` and `variance` (D22 sec. 3-4): cosine-weighted means.
  *
- * sigma^2 = mean of (1 - mu^2) T01 / mean of T01, by the reciprocity of two_sided.h. */
+ * sigma^2 = mean of (1 - mu^2) T01 / mean of T01, by the reciprocity of two_sided.h; its roughness is solved
+ * for, and interpolated between indices, beside it. */
 #include "microfacet/lobe.h"
 #include "precompute/eta_curve.h"
 #include "precompute/kinds.h"
@@ -8,6 +9,7 @@
 #include "tables/status.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const double no_loss = 1.0;
 
@@ -24,6 +26,7 @@ static lq_status variance_values(lq_rough *rough, double eta, int level, const v
         moment += mean.weight[q] * answer[q] * (1.0 - mean.mu[q]) * (1.0 + mean.mu[q]);
     }
     values[0] = flux > 0.0 ? moment / flux : 0.0;
+    values[1] = lq_lobe_roughness(rough->ndf, values[0]);
     return status;
 }
 
@@ -40,7 +43,7 @@ static lq_status solve_diffuse_at(const void *user, double eta, double tolerance
     return lq_mean_solve(r->rough, eta, tolerance, r->evaluate, &r->asked, r->count, values, estimate, error);
 }
 
-/* Kinds over eta, alpha(, tau): the slice is the roughness, the second axis. */
+/* Kinds over eta, alpha(, tau): the slice is the roughness, the second axis. `taus`: values at one index. */
 static lq_status diffuse_slice(const lq_job *job, double tolerance, size_t index, lq_level_values *evaluate,
                                bool transmitted, size_t taus, double *values, double *estimate,
                                lq_error *error) {
@@ -81,12 +84,17 @@ static const double ROUGHNESS_SLOPE = 2.5;
 
 static lq_status variance_slice(const lq_job *job, const void *state, size_t index, double *const *values,
                                 double *estimate, lq_error *error) {
+    enum { BOTH = 2 };
     (void)state;
+    const size_t etas = job->size[0];
+    double *both = malloc(BOTH * etas * sizeof *both);
+    if (!both) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu values", BOTH * etas);
     const lq_status status = diffuse_slice(job, job->tolerance / ROUGHNESS_SLOPE, index, variance_values,
-                                           true, 1, values[0], estimate, error);
-    for (size_t e = 0; status == LQ_OK && e < job->size[0]; e++)
-        values[1][e] = lq_lobe_roughness(job->ndf, values[0][e]);
+                                           true, BOTH, both, estimate, error);
+    for (int c = 0; status == LQ_OK && c < BOTH; c++)
+        memcpy(values[c], both + (size_t)c * etas, etas * sizeof *both);
     *estimate *= ROUGHNESS_SLOPE;
+    free(both);
     return status;
 }
 

@@ -2,6 +2,7 @@
 #include "precompute/two_sided.h"
 
 #include "precompute/first_bounce.h"
+#include "precompute/series.h"
 #include "tables/status.h"
 
 #include <math.h>
@@ -135,6 +136,64 @@ static lq_status watched_solve(lq_rough *rough, double eta, double tolerance, co
     return status;
 }
 
+/* -------------------------------------------------------------------------- many cosines */
+
+/* From the rarer side energies are smooth functions of x = asinh(mu / alpha): the nearest singularities, of
+ * masking at mu = i alpha and of Fresnel's reflectance at mu = i sqrt(eta^2 - 1), lie pi / 2 off the real
+ * axis. */
+static double position_of(const lq_rough *rough, double mu) {
+    return asinh(mu / rough->alpha);
+}
+
+/* No nodes where there is no such interpolation, or where it does not pay. */
+static lq_series plan(const lq_rough *rough, double eta, const lq_directional *d) {
+    lq_series s = {.from = INFINITY, .to = -INFINITY};
+    if (eta < lq_dielectric_regular_from(rough) || rough->alpha < LQ_SMOOTH_ALPHA) return s;
+    for (size_t m = 0; m < d->mu_count; m++) {
+        s.from = fmin(s.from, position_of(rough, d->mu[m]));
+        s.to = fmax(s.to, position_of(rough, d->mu[m]));
+    }
+    const size_t nodes = (size_t)ceil(20.0 + 4.0 * (s.to - s.from));
+    if (nodes <= LQ_SERIES_MAX && 3 * nodes <= d->mu_count) s.nodes = nodes;
+    return s;
+}
+
+static void interpolate(const lq_series *s, const lq_rough *rough, const lq_directional *d,
+                        const double *at_node, double *values) {
+    double weight[LQ_SERIES_MAX];
+    for (size_t m = 0; m < d->mu_count; m++) {
+        lq_series_weights(s, position_of(rough, d->mu[m]), weight);
+        for (size_t t = 0; t < d->tau_count; t++) {
+            double sum = 0.0;
+            for (size_t k = 0; k < s->nodes; k++) sum += weight[k] * at_node[t * s->nodes + k];
+            values[t * d->mu_count + m] = fmin(fmax(sum, 0.0), 1.0);
+        }
+    }
+}
+
+/* Solved at few cosines and interpolated to the others where these are many and the series says that it
+ * holds; otherwise at each. */
+static lq_status many_solve(lq_rough *rough, double eta, double tolerance, const lq_directional *d,
+                            double *values, double *estimate, lq_error *error) {
+    const lq_series s = plan(rough, eta, d);
+    if (s.nodes == 0) return watched_solve(rough, eta, tolerance, d, values, estimate, error);
+    double mu[LQ_SERIES_MAX], *at_node = malloc(s.nodes * d->tau_count * sizeof *at_node);
+    if (!at_node) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", s.nodes);
+    for (size_t k = 0; k < s.nodes; k++)
+        mu[k] = fmin(fmax(rough->alpha * sinh(lq_series_node(&s, k)), 0.0), 1.0);
+    lq_directional few = *d;
+    few.mu = mu;
+    few.mu_count = s.nodes;
+    lq_status status = watched_solve(rough, eta, tolerance * 2.0 / 3.0, &few, at_node, estimate, error);
+    const double missing = lq_series_truncation(&s, at_node, 1, s.nodes, d->tau_count);
+    const bool holds = missing <= tolerance / 3.0;
+    if (status == LQ_OK && holds) interpolate(&s, rough, d, at_node, values);
+    if (status == LQ_OK && holds) *estimate += missing;
+    free(at_node);
+    return status == LQ_OK && !holds ? watched_solve(rough, eta, tolerance, d, values, estimate, error)
+                                     : status;
+}
+
 /* ------------------------------------------------------------------------ nearly matched media */
 
 /* What so many facets do without turning anything back: all is reflected below the critical cosine, and
@@ -191,7 +250,7 @@ lq_status lq_directional_solve(lq_rough *rough, double eta, double tolerance, co
     const bool solvable =
         near.eta == 0.0 || d->scattering == LQ_SINGLE || !lq_dielectric_is_matched(rough, eta);
     if (status == LQ_OK && *estimate > tolerance && solvable)
-        status = watched_solve(rough, eta, tolerance, d, values, estimate, error);
+        status = many_solve(rough, eta, tolerance, d, values, estimate, error);
     if (rough->alpha < LQ_SMOOTH_ALPHA) *estimate = smooth_estimate(rough->alpha);
     return status;
 }

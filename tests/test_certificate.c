@@ -134,10 +134,10 @@ static void test_planted_error_is_measured(void **state) {
     assert_near(c.total.p99, p99, 3e-4);
     assert_true(c.total.p99_limit > p99 && c.total.p99_limit < 0.0095);
     /* the tip: by the search, not by the sample */
-    assert_true(c.total.max < 0.01 - 2e-5);
-    assert_near(c.found.error, 0.01, 2e-5);
-    assert_near(c.found.at[0], bump_at[0], 6e-4);
-    assert_near(c.found.at[2], bump_at[1], 6e-4);
+    assert_true(c.total.max < 0.01 - 5e-5);
+    assert_near(c.found.error, 0.01, 5e-5);
+    assert_near(c.found.at[0], bump_at[0], 1.3e-3);
+    assert_near(c.found.at[2], bump_at[1], 1.3e-3);
     assert_near(c.max, c.found.error, 0.0);
     assert_near(c.unseen, 1.0 - pow(0.05, 1.0 / (double)c.plan.count), 1e-12);
     lq_certificate_free(&c);

@@ -22,6 +22,9 @@ stat -c '%n %y' cache/* >before.txt
 stat -c '%n %y' cache/* | diff before.txt - || fail "the second run computed something"
 diff -r realtime again && diff realtime.txt again.txt || fail "the second run"
 
+"$lacquer" validate realtime --points 3000 >certificate.txt || fail "its certificate: $(cat certificate.txt)"
+[ "$(grep -c '^passed$' certificate.txt)" = 10 ] || fail "ten tables: $(cat certificate.txt)"
+
 # No table misses a figure that the issue of budgets names, whatever the recipe says of itself.
 bytes=$(awk '/^all textures/ { print $3 }' realtime.txt)
 [ "$bytes" -gt 100000 ] && [ "$bytes" -le 524288 ] || fail "realtime takes $bytes bytes"

@@ -1,6 +1,7 @@
 /* Certificates: every block computed, decoded and reduced. */
 #include "validate/certificate.h"
 
+#include "pack/measure.h"
 #include "tables/status.h"
 #include "validate/certificate_confidence.h"
 
@@ -16,6 +17,12 @@ double lq_decode_table(const void *table, int channel, const double *point) {
 double lq_decode_factored(const void *factored, int channel, const double *point) {
     (void)channel;
     return lq_factored_lookup(factored, point);
+}
+
+double lq_decode_texture(const void *texture, int channel, const double *point) {
+    double values[4];
+    lq_texture_sample(texture, point, LQ_FILTER_BITS, values);
+    return values[channel];
 }
 
 double lq_decode_gpu(const void *factored, int channel, const double *point) {
@@ -51,16 +58,17 @@ static lq_status measure_block(lq_certificate *c, size_t b, double *estimate, lq
     lq_status status = block && values ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a block");
     if (status == LQ_OK) {
         lq_block_draw(&c->plan, b, block);
-        status = lq_block_exact(r->kind, &r->settings, block, values, estimate, error);
+        status = lq_block_exact(r->kind, &r->settings, r->curve, block, values, estimate, error);
     }
     for (size_t i = 0; status == LQ_OK && i < count; i++) {
         double *point = c->at + (first + i) * (size_t)axes;
         lq_block_point(block, axes, i, point);
         for (size_t k = 0; k < channels_of(c); k++) {
             const size_t to = k * c->points + first + i;
-            c->exact[to] = values[k * count + i];
+            const double exact = values[k * count + i], unit = r->relative ? fabs(exact) : 1.0;
+            c->exact[to] = exact / unit;
             for (int s = 0; s < r->stage_count; s++)
-                c->decoded[s][to] = r->stages[s].decode(r->stages[s].subject, (int)k, point);
+                c->decoded[s][to] = r->stages[s].decode(r->stages[s].subject, (int)k, point) / unit;
         }
     }
     free(values);

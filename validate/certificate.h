@@ -23,7 +23,9 @@ typedef struct lq_stage {
 
 typedef struct lq_certify_request {
     const lq_kind *kind;
-    lq_settings settings; /* of the exact values */
+    lq_settings settings;  /* of the exact values */
+    const lq_curve *curve; /* of a mapping (pack/mapping.h): what its values are computed from */
+    bool relative; /* errors are, of the exact value: decoded values and exact ones are divided by it */
     lq_domain domain;
     lq_stage stages[LQ_STAGES_MAX];
     int stage_count;
@@ -73,9 +75,11 @@ void lq_certificate_free(lq_certificate *certificate);
 /* The directed search alone: fills `found`. */
 lq_status lq_certify_search(lq_certificate *certificate, lq_error *error);
 
-/* Decoders: a stored table between its nodes, factors in double, and as a GPU filters them. */
+/* Decoders: a stored table between its nodes, factors in double, and a texture and factors as a GPU filters
+ * them. */
 double lq_decode_table(const void *table, int channel, const double *point);
 double lq_decode_factored(const void *factored, int channel, const double *point);
+double lq_decode_texture(const void *texture, int channel, const double *point);
 double lq_decode_gpu(const void *factored, int channel, const double *point);
 
 #endif

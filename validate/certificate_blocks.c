@@ -1,6 +1,7 @@
 /* Blocks: how large, where, and their exact values from the evaluator of the kind. */
 #include "validate/certificate_blocks.h"
 
+#include "pack/mapping.h"
 #include "precompute/evaluator.h"
 #include "tables/status.h"
 #include "validate/stream.h"
@@ -15,7 +16,7 @@ enum { STREAM_POINTS = 0x626c6f63, STREAM_STRATA = 0x73747261 };
 /* Points of a block: a dielectric solve costs as much as a hundred answers, a conductor's or a lobe's about
  * as much as a few. Few points a block mean many blocks, that is more independent ones. Of each part of a
  * conductor's index a block has two values: every index has a Fresnel curve of its own. */
-enum { POINTS_OF_SOLVE = 256, POINTS_OF_SLICE = 64, INDEX_PARTS = 2 };
+enum { POINTS_OF_SOLVE = 640, POINTS_OF_SWEEP = 2048, POINTS_OF_SLICE = 64, INDEX_PARTS = 2 };
 
 /* ------------------------------------------------------------------------------------ the plan */
 
@@ -27,21 +28,29 @@ static bool is_index_part(const char *axis) {
     return strcmp(axis, "n") == 0 || strcmp(axis, "kappa") == 0;
 }
 
+int lq_block_slice_axis(const lq_kind *kind) {
+    return lq_is_mapping(kind) ? -1 : lq_evaluator_find(kind->id)->slice_axis;
+}
+
 /* Fixed axes have one value, axes that cost a solve too; what is left shares the points of a block. */
 static void choose_sizes(lq_block_plan *plan, size_t points) {
     const lq_kind *kind = plan->kind;
-    const int slice = lq_evaluator_find(kind->id)->slice_axis;
+    const int slice = lq_block_slice_axis(kind);
+    /* An index costs a solve, unless there are very many: then one solve in a hundred serves. */
+    const bool sweeps = is_dielectric(kind) && kind->axis_count == 2;
+    const bool solves_indices = is_dielectric(kind) && !sweeps;
+    plan->sweep_axis = sweeps ? 1 - slice : -1;
     bool shares[LQ_MAX_AXES];
     int shared = 0, parts = 1;
     for (int a = 0; a < kind->axis_count; a++) {
         const bool free_axis = plan->domain.max[a] > plan->domain.min[a];
-        plan->solves[a] = a == slice || (is_dielectric(kind) && strcmp(kind->axes[a].name, "eta") == 0);
+        plan->solves[a] = a == slice || (solves_indices && strcmp(kind->axes[a].name, "eta") == 0);
         plan->size[a] = free_axis && is_index_part(kind->axes[a].name) ? INDEX_PARTS : 1;
         parts *= (int)plan->size[a];
         shares[a] = !plan->solves[a] && free_axis && plan->size[a] == 1;
         shared += shares[a];
     }
-    const double most = is_dielectric(kind) ? POINTS_OF_SOLVE : POINTS_OF_SLICE;
+    const double most = sweeps ? POINTS_OF_SWEEP : solves_indices ? POINTS_OF_SOLVE : POINTS_OF_SLICE;
     plan->per_block = 1;
     for (int a = 0; a < kind->axis_count; a++) {
         if (shares[a]) plan->size[a] = (size_t)round(pow(most / parts, 1.0 / shared));
@@ -112,8 +121,20 @@ void lq_block_point(const lq_block *block, int axis_count, size_t i, double *poi
     }
 }
 
-lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const lq_block *block,
-                         double *values, double *estimate, lq_error *error) {
+/* A curve is cheap, and as exact as its accuracy says. */
+static lq_status mapping_exact(const lq_kind *kind, const lq_curve *curve, const lq_block *block,
+                               double *values, double *estimate) {
+    *estimate = 0.0;
+    for (size_t i = 0; i < block->size[0]; i++) {
+        values[i] = lq_mapping_value(kind, curve, block->nodes[0][i]);
+        *estimate = fmax(*estimate, curve->accuracy * fabs(values[i]));
+    }
+    return LQ_OK;
+}
+
+lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const lq_curve *curve,
+                         const lq_block *block, double *values, double *estimate, lq_error *error) {
+    if (lq_is_mapping(kind)) return mapping_exact(kind, curve, block, values, estimate);
     const lq_evaluator *evaluator = lq_evaluator_find(kind->id);
     const size_t points = lq_block_points(block, kind->axis_count);
     const double *nodes[LQ_MAX_AXES];
@@ -131,5 +152,16 @@ lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const
     if (status == LQ_OK) status = evaluator->slice(&job, state, 0, channels, estimate, error);
     if (evaluator->release) evaluator->release(state);
     lq_job_free(&job);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+}
+
+lq_status lq_point_exact(const lq_kind *kind, const lq_settings *settings, const lq_curve *curve,
+                         const double *point, double *values, double *estimate, lq_error *error) {
+    if (lq_is_mapping(kind)) {
+        values[0] = lq_mapping_value(kind, curve, point[0]);
+        *estimate = curve->accuracy * fabs(values[0]);
+        return LQ_OK;
+    }
+    const lq_status status = lq_eval(kind, settings, point, values, estimate, error);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }

@@ -9,11 +9,12 @@
 #ifndef LACQUER_VALIDATE_CERTIFICATE_BLOCKS_H
 #define LACQUER_VALIDATE_CERTIFICATE_BLOCKS_H
 
+#include "fit/curve.h"
 #include "lacquer.h"
 
 #include <stdint.h>
 
-enum { LQ_BLOCK_AXIS_MAX = 256 };
+enum { LQ_BLOCK_AXIS_MAX = 2048 };
 
 /* A part of the space of a table: both ends included. */
 typedef struct lq_domain {
@@ -24,9 +25,10 @@ typedef struct lq_block_plan {
     const lq_kind *kind;
     lq_domain domain;
     uint64_t seed;
-    bool solves[LQ_MAX_AXES];     /* every value along this axis costs a solve */
-    size_t size[LQ_MAX_AXES];     /* of a block; 1 where a value costs a solve */
-    size_t count, per_block;      /* blocks, points of each */
+    bool solves[LQ_MAX_AXES]; /* every value along this axis costs a solve */
+    int sweep_axis;           /* where thousands of values cost a dozen solves, but few one each; -1: none */
+    size_t size[LQ_MAX_AXES]; /* of a block; 1 where a value costs a solve */
+    size_t count, per_block;  /* blocks, points of each */
     size_t *stratum[LQ_MAX_AXES]; /* of block b along an axis that costs a solve */
 } lq_block_plan;
 
@@ -46,8 +48,15 @@ size_t lq_block_points(const lq_block *block, int axis_count);
 void lq_block_point(const lq_block *block, int axis_count, size_t i, double *point);
 
 /* values[channel * points + i]. The slice axis of the kind must have one value. A tolerance that is not
- * reached shows in *estimate only. */
-lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const lq_block *block,
-                         double *values, double *estimate, lq_error *error);
+ * reached shows in *estimate only. `curve`: of a mapping. */
+lq_status lq_block_exact(const lq_kind *kind, const lq_settings *settings, const lq_curve *curve,
+                         const lq_block *block, double *values, double *estimate, lq_error *error);
+
+/* The same at one point. */
+lq_status lq_point_exact(const lq_kind *kind, const lq_settings *settings, const lq_curve *curve,
+                         const double *point, double *values, double *estimate, lq_error *error);
+
+/* The axis along which one value costs a solve; -1: none does. */
+int lq_block_slice_axis(const lq_kind *kind);
 
 #endif

@@ -59,14 +59,25 @@ void lq_check_budget(lq_certified *certified) {
     }
 }
 
+/* Of a pack: every container holds the same texels. */
+static void check_files(lq_certified *certified) {
+    const lq_subject *s = &certified->subject;
+    if (s->files == 0) return;
+    lq_check_add(certified, "files as made", (double)s->altered, 0.0, "of %zu, by their checksums%s%s",
+                 s->files, s->altered ? "; first: " : "", s->altered ? s->suspect : "");
+    lq_check_add(certified, "files agree", (double)s->differing, 0.0,
+                 "texels that are not the same in all%s%s", s->differing ? "; first in " : "",
+                 s->differing ? s->suspect : "");
+}
+
 /* ----------------------------------------------------------------------------------- the whole */
 
-/* Kinds without an axis that shares a solve get fewer points. */
+/* Kinds whose every value needs a solve get fewer points. */
 static size_t choose_points(const lq_certify_options *options, const lq_kind *kind) {
     if (options->points > 0) return options->points;
     bool shares = false;
-    const int slice = lq_evaluator_find(kind->id)->slice_axis;
-    for (int a = 0; a < kind->axis_count; a++) shares |= a != slice && strcmp(kind->axes[a].name, "eta") != 0;
+    const int slice = lq_block_slice_axis(kind);
+    for (int a = 0; a < kind->axis_count; a++) shares |= a != slice;
     return shares ? LQ_CERTIFICATE_POINTS : LQ_CERTIFICATE_SOLVES;
 }
 
@@ -86,6 +97,8 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
     const lq_kind *kind = subject->origin.kind;
     lq_certify_request request = {.kind = kind,
                                   .settings = subject->origin.settings,
+                                  .curve = subject->curve,
+                                  .relative = subject->relative,
                                   .domain = lq_subject_domain(subject),
                                   .points = choose_points(options, kind),
                                   .starts = LQ_CERTIFICATE_STARTS,
@@ -99,6 +112,7 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
     if (status == LQ_OK) status = lq_certify(&request, progress, &certified->certificate, error);
     if (status != LQ_OK) return status;
     lq_check_budget(certified);
+    check_files(certified);
     lq_check_physics(certified);
     status = lq_check_bands(certified, error);
     if (status == LQ_OK) status = lq_check_texels(certified, error);

@@ -42,7 +42,7 @@ static lq_status decode_grid(const lq_certified *certified, lq_table **grid, lq_
 }
 
 lq_status lq_check_definition(lq_certified *certified, lq_error *error) {
-    if (!lq_certified_failure(certified)) return LQ_OK;
+    if (!lq_certified_failure(certified) || certified->subject.curve) return LQ_OK; /* a mapping has none */
     const lq_origin *origin = &certified->subject.origin;
     lq_table *grid = NULL;
     lq_variants variants;

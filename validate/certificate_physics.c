@@ -51,8 +51,11 @@ static void check_decoded_range(lq_certified *certified) {
     const lq_certificate *c = &certified->certificate;
     const double *decoded = c->decoded[c->request.stage_count - 1];
     double worst = 0.0;
-    for (size_t i = 0; i < c->points * (size_t)c->request.kind->channel_count; i++)
-        worst = fmax(worst, outside(c->request.kind, decoded[i]));
+    /* Parts of the exact value have no range: that they do not change sign is what is left. */
+    lq_kind kind = *c->request.kind;
+    if (c->request.relative) kind.value_min = 0.0, kind.value_max = INFINITY;
+    for (size_t i = 0; i < c->points * (size_t)kind.channel_count; i++)
+        worst = fmax(worst, outside(&kind, decoded[i]));
     lq_check_add(certified, "range decoded", worst, 1e-7, "%zu points", c->points);
 }
 
@@ -150,11 +153,12 @@ static lq_status errors_of(const lq_certify_request *r, const lq_block *block, d
     const lq_stage *last = &r->stages[r->stage_count - 1];
     const size_t points = lq_block_points(block, r->kind->axis_count);
     double estimate;
-    const lq_status status = lq_block_exact(r->kind, &r->settings, block, values, &estimate, error);
+    const lq_status status = lq_block_exact(r->kind, &r->settings, r->curve, block, values, &estimate, error);
     for (size_t i = 0; status == LQ_OK && i < points * (size_t)r->kind->channel_count; i++) {
         double point[LQ_MAX_AXES];
         lq_block_point(block, r->kind->axis_count, i % points, point);
-        values[i] = last->decode(last->subject, (int)(i / points), point) - values[i];
+        const double unit = r->relative ? fabs(values[i]) : 1.0;
+        values[i] = (last->decode(last->subject, (int)(i / points), point) - values[i]) / unit;
     }
     return status;
 }
@@ -238,6 +242,7 @@ lq_status lq_check_bands(lq_certified *certified, lq_error *error) {
     lq_block_plan plan;
     lq_status status =
         lq_block_plan_make(&plan, kind, &c->plan.domain, c->plan.per_block * BANDS, c->request.seed, error);
+    if (plan.sweep_axis >= 0) plan.size[plan.sweep_axis] = FEW; /* each costs a solve */
     double *size = malloc(items * room * sizeof *size);
     if (status == LQ_OK && !size) status = lq_fail(error, LQ_NO_MEMORY, "no memory for bands");
     size_t count = 0;

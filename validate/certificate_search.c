@@ -27,7 +27,8 @@ typedef struct climb {
 
 /* Window points along one axis: an axis that blocks have few values of is a dear one. */
 static size_t window_size(const lq_block_plan *plan, int axis) {
-    return plan->size[axis] == 1 ? 1 : plan->size[axis] < 4 ? 3 : 9;
+    const bool dear = plan->size[axis] < 4 || axis == plan->sweep_axis;
+    return plan->size[axis] == 1 ? 1 : dear ? 3 : 9;
 }
 
 /* The window around `at`, ascending and within the domain. */
@@ -49,15 +50,17 @@ static lq_status look(climb *s, const double *at, lq_found *best, lq_error *erro
     const lq_stage *last = &r->stages[r->stage_count - 1];
     double estimate;
     place(s, at);
-    const lq_status status = lq_block_exact(r->kind, &r->settings, &s->block, s->values, &estimate, error);
+    const lq_status status =
+        lq_block_exact(r->kind, &r->settings, r->curve, &s->block, s->values, &estimate, error);
     const size_t count = lq_block_points(&s->block, r->kind->axis_count);
     s->best.evaluations += count;
     for (size_t i = 0; status == LQ_OK && i < count; i++) {
         double point[LQ_MAX_AXES] = {0.0};
         lq_block_point(&s->block, r->kind->axis_count, i, point);
         for (int k = 0; k < r->kind->channel_count; k++) {
-            const double exact = s->values[(size_t)k * count + i];
-            const double decoded = last->decode(last->subject, k, point), off = fabs(decoded - exact);
+            const double value = s->values[(size_t)k * count + i], unit = r->relative ? fabs(value) : 1.0;
+            const double exact = value / unit, decoded = last->decode(last->subject, k, point) / unit;
+            const double off = fabs(decoded - exact);
             if (off <= best->error) continue; /* a NaN is worse than any number */
             *best = (lq_found){.channel = k, .decoded = decoded, .exact = exact};
             best->error = isnan(off) ? INFINITY : off;

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCKS = 24, ALONG = 8, STREAM_NODES = 0x6e6f6465 };
+enum { BLOCKS = 24, ALONG = 8, ALONG_DEAR = 2, STREAM_NODES = 0x6e6f6465 };
 
 /* Half a unit in the last place of a stored value in [0.5, 1]. */
 static const double rounding = 3e-8;
@@ -27,6 +27,8 @@ typedef struct stored {
     const lq_table *table;
     const lq_kind *kind;
     lq_settings settings;
+    const lq_curve *curve;
+    bool halves, relative;
     double worst, allowance, rms; /* of |stored - exact| - allowance: worst; rms: sum of squares at first */
     double most;                  /* |stored - exact| at `at` */
     double at[LQ_MAX_AXES];
@@ -34,8 +36,10 @@ typedef struct stored {
 } stored;
 
 static void compare(stored *s, const double *at, double value, double exact, double estimate) {
-    const double d = value - exact, size = isnan(d) ? INFINITY : fabs(d);
-    const double excess = size - (s->allowance + estimate);
+    const double unit = s->relative ? fabs(exact) : 1.0;
+    const double d = (value - exact) / unit, size = isnan(d) ? INFINITY : fabs(d);
+    const double half = s->halves ? ldexp(fabs(value), -11) : 0.0;
+    const double excess = size - (s->allowance + (estimate + half) / unit);
     s->rms += d * d;
     if (s->count++ > 0 && excess <= s->worst) return;
     s->worst = excess;
@@ -62,14 +66,16 @@ static lq_status compare_block(stored *s, const lq_block_plan *plan, size_t inde
     size_t points = 1;
     if (!block) return lq_fail(error, LQ_NO_MEMORY, "no memory for a block");
     for (int a = 0; a < axes; a++) {
+        const size_t most = a == plan->sweep_axis ? ALONG_DEAR : ALONG;
         block->size[a] =
-            draw_nodes(&s->table->axes[a], plan->size[a] < ALONG ? plan->size[a] : ALONG, &stream, node[a]);
+            draw_nodes(&s->table->axes[a], plan->size[a] < most ? plan->size[a] : most, &stream, node[a]);
         for (size_t i = 0; i < block->size[a]; i++) block->nodes[a][i] = s->table->axes[a].nodes[node[a][i]];
         points *= block->size[a];
     }
     double *values = malloc(points * (size_t)s->kind->channel_count * sizeof *values);
-    lq_status status = values ? lq_block_exact(s->kind, &s->settings, block, values, &estimate, error)
-                              : lq_fail(error, LQ_NO_MEMORY, "no memory for a block");
+    lq_status status = values
+                           ? lq_block_exact(s->kind, &s->settings, s->curve, block, values, &estimate, error)
+                           : lq_fail(error, LQ_NO_MEMORY, "no memory for a block");
     for (size_t i = 0; status == LQ_OK && i < points; i++) {
         double at[LQ_MAX_AXES] = {0.0};
         size_t entry_index = 0, stride = 1, left = i;
@@ -94,8 +100,8 @@ static lq_status compare_suspect(stored *s, const lq_suspect *e, lq_error *error
         at[a] = s->table->axes[a].nodes[left % s->table->axes[a].size];
         left /= s->table->axes[a].size;
     }
-    const lq_status status = lq_eval(s->kind, &s->settings, at, exact, &estimate, error);
-    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return status;
+    const lq_status status = lq_point_exact(s->kind, &s->settings, s->curve, at, exact, &estimate, error);
+    if (status != LQ_OK) return status;
     compare(s, at, (double)s->table->channels[e->channel][e->index], exact[e->channel], estimate);
     return LQ_OK;
 }
@@ -142,6 +148,9 @@ lq_status lq_check_stored(lq_certified *certified, lq_error *error) {
     const double tolerance = subject->origin.settings.tolerance;
     stored s = {.table = subject->table, .kind = subject->origin.kind, .allowance = tolerance + rounding};
     s.settings = subject->origin.settings;
+    s.curve = subject->curve;
+    s.halves = subject->texture.axis_count > 0;
+    s.relative = subject->relative;
     s.settings.tolerance = fmax(0.1 * tolerance, s.kind->finest_tolerance);
     lq_suspect suspects[LQ_SUSPECTS];
     lq_suspects_find(s.table, tolerance, suspects);

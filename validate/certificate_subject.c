@@ -1,7 +1,11 @@
 /* Reads tables and factors, and makes the factors as they may have been before they were rounded to half. */
 #include "validate/certificate_subject.h"
 
+#include "fit/curve.h"
+#include "pack/mapping.h"
 #include "pca/factors.h"
+#include "pca/factors_json.h"
+#include "tables/facts.h"
 #include "tables/half.h"
 #include "tables/status.h"
 #include "validate/stream.h"
@@ -24,15 +28,17 @@ static float before_rounding(float half, double u) {
 /* Purpose of the random stream. */
 enum { STREAM_TEXELS = 0x746578 };
 
+static void unround_list(float *values, size_t count, uint64_t number) {
+    lq_stream stream = lq_stream_open(0, STREAM_TEXELS, number);
+    for (size_t i = 0; i < count; i++) values[i] = before_rounding(values[i], lq_stream_uniform(&stream));
+}
+
 static void unround(lq_factored *factored) {
     uint64_t number = 0;
     for (int p = 0; p < factored->piece_count; p++)
         for (int f = 0; f < factored->pieces[p].factor_count; f++, number++) {
             lq_factor *factor = &factored->pieces[p].factors[f];
-            const size_t values = lq_factor_texels(factor) * factor->base_count;
-            lq_stream stream = lq_stream_open(0, STREAM_TEXELS, number);
-            for (size_t i = 0; i < values; i++)
-                factor->data[i] = before_rounding(factor->data[i], lq_stream_uniform(&stream));
+            unround_list(factor->data, lq_factor_texels(factor) * factor->base_count, number);
         }
 }
 
@@ -81,6 +87,76 @@ lq_status lq_subject_read(lq_subject *s, const char *path, lq_error *error) {
     return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", path, cause.text);
 }
 
+/* --------------------------------------------------------------------------- tables of a pack */
+
+static lq_status copy_factored(const lq_factored *from, lq_factored **copy, lq_error *error) {
+    char *structure = lq_factored_to_json(from);
+    lq_factored *made = calloc(1, sizeof *made);
+    *copy = made;
+    lq_status status = structure && made
+                           ? lq_factored_from_json(structure, made, error)
+                           : lq_fail(error, LQ_NO_MEMORY, "no memory for a copy of the factors");
+    free(structure);
+    for (int p = 0; status == LQ_OK && p < from->piece_count; p++)
+        for (int f = 0; f < from->pieces[p].factor_count; f++) {
+            const lq_factor *factor = &from->pieces[p].factors[f];
+            memcpy(made->pieces[p].factors[f].data, factor->data,
+                   lq_factor_texels(factor) * factor->base_count * sizeof *factor->data);
+        }
+    return status;
+}
+
+static lq_status copy_unrounded(const lq_table *from, lq_table **copy, lq_error *error) {
+    const char *channels[LQ_MAX_CHANNELS];
+    for (int c = 0; c < from->channel_count; c++) channels[c] = from->channel_names[c];
+    const lq_status status =
+        lq_table_create(copy, from->axes, from->axis_count, channels, from->channel_count, error);
+    for (int c = 0; status == LQ_OK && c < from->channel_count; c++) {
+        memcpy((*copy)->channels[c], from->channels[c], lq_table_entries(from) * sizeof(float));
+        unround_list((*copy)->channels[c], lq_table_entries(from), (uint64_t)c);
+    }
+    return status;
+}
+
+/* What lq_mapping_table sets: the NDF. The tolerance is that of the curve. */
+static lq_status mapping_origin(lq_subject *s, const lq_kind *kind, const lq_fact *facts, size_t count,
+                                lq_error *error) {
+    const char *ndf = lq_facts_find(facts, count, "ndf");
+    if (!ndf) return lq_fail(error, LQ_FORMAT, "the manifest does not say its ndf");
+    s->origin.kind = kind;
+    s->origin.settings = lq_settings_default();
+    s->origin.settings.ndf = ndf;
+    s->curve = malloc(sizeof *s->curve);
+    return s->curve ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a curve");
+}
+
+lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, lq_error *error) {
+    *s = (lq_subject){.table = shipped->table, .factored = shipped->factored, .texture = shipped->texture};
+    s->relative = shipped->relative;
+    s->files = shipped->files;
+    s->altered = shipped->altered;
+    s->differing = shipped->differing;
+    snprintf(s->name, sizeof s->name, "%s", shipped->name);
+    snprintf(s->suspect, sizeof s->suspect, "%s", shipped->suspect);
+    const lq_kind *kind = shipped->kind;
+    *shipped = (lq_shipped){.files = 0};
+    lq_error cause = {""};
+    lq_status status = s->factored ? copy_factored(s->factored, &s->unrounded, &cause)
+                                   : copy_unrounded(s->table, &s->unrounded_table, &cause);
+    if (status == LQ_OK && s->unrounded) unround(s->unrounded);
+    const lq_fact *facts = s->factored ? s->factored->facts : s->table->facts;
+    const size_t count = s->factored ? s->factored->fact_count : s->table->fact_count;
+    if (status == LQ_OK)
+        status = lq_is_mapping(kind) ? mapping_origin(s, kind, facts, count, &cause)
+                                     : lq_origin_of_facts(facts, count, &s->origin, &cause);
+    if (status == LQ_OK && s->origin.kind != kind)
+        status = lq_fail(&cause, LQ_FORMAT, "made as '%s', listed as '%s'", s->origin.kind->id, kind->id);
+    if (status == LQ_OK && s->factored) status = check_axes(s->factored, kind, &cause);
+    if (status == LQ_OK) status = lq_ndf_open(&s->origin.settings.opened, s->origin.settings.ndf, &cause);
+    if (status == LQ_OK && s->curve) status = lq_curve_make(s->curve, s->origin.settings.opened, &cause);
+    return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", s->name, cause.text);
+}
+
 lq_status lq_subject_add_table(lq_subject *s, const char *path, lq_error *error) {
     lq_origin origin;
     lq_error cause = {""};
@@ -98,6 +174,9 @@ void lq_subject_free(lq_subject *s) {
     lq_table_free(s->table);
     lq_factored_free(s->factored);
     lq_factored_free(s->unrounded);
+    lq_table_free(s->unrounded_table);
+    lq_texture_free(&s->texture);
+    free(s->curve);
     *s = (lq_subject){.table = NULL};
 }
 
@@ -114,6 +193,12 @@ lq_domain lq_subject_domain(const lq_subject *s) {
 
 int lq_subject_stages(const lq_subject *s, lq_stage *stages) {
     int count = 0;
+    if (s->texture.axis_count > 0) {
+        stages[0] = (lq_stage){"unrounded", "interpolation", lq_decode_table, s->unrounded_table};
+        stages[1] = (lq_stage){"texels", "half-float", lq_decode_table, s->table};
+        stages[2] = (lq_stage){"gpu", "filter", lq_decode_texture, &s->texture};
+        return 3;
+    }
     if (s->table) stages[count++] = (lq_stage){"table", "interpolation", lq_decode_table, s->table};
     if (!s->factored) return count;
     stages[count] = (lq_stage){"unrounded", count ? "factorisation" : "table and factors", lq_decode_factored,

@@ -3,8 +3,9 @@
 #ifndef LACQUER_VALIDATE_CERTIFICATE_SUBJECT_H
 #define LACQUER_VALIDATE_CERTIFICATE_SUBJECT_H
 
-#include "validate/certificate.h"
+#include "pack/read.h"
 #include "tables/origin.h"
+#include "validate/certificate.h"
 
 typedef struct lq_subject {
     char name[256];
@@ -12,10 +13,20 @@ typedef struct lq_subject {
     lq_factored *factored;  /* or NULL */
     lq_factored *unrounded; /* the factors with every texel moved at random within what rounds to its half */
     lq_origin origin;
+    /* Of a pack: */
+    lq_texture texture;        /* that holds the table in halves; no axes: it is in floats */
+    lq_table *unrounded_table; /* the table, its entries moved likewise */
+    lq_curve *curve;           /* of a mapping */
+    bool relative;             /* its errors are */
+    size_t files, altered;     /* files read, those that are not as the manifest says */
+    size_t differing;          /* texels that are not the same in all of them */
+    char suspect[128];         /* the first such file */
 } lq_subject;
 
 /* A table or a factor file, whichever it is. Free it in every case. */
 lq_status lq_subject_read(lq_subject *subject, const char *path, lq_error *error);
+/* A table of a pack, whose contents it takes over. */
+lq_status lq_subject_ship(lq_subject *subject, lq_shipped *shipped, lq_error *error);
 /* The table that the factors were made from: its interpolation becomes a part of its own. */
 lq_status lq_subject_add_table(lq_subject *subject, const char *path, lq_error *error);
 void lq_subject_free(lq_subject *subject);

@@ -3,7 +3,8 @@
  * A changed texel moves what is decoded at its centre, and half as much half way to its neighbours. Seen over
  * the texels of its image, with the other axes held anywhere, that is a point that sticks out. The points
  * that do so most are compared with the solver, and so are the neighbours: error minus the mean of the errors
- * to either side, the least over the axes of the image, is what the texel alone is off by. Rounding and fit
+ * to either side (at an edge: minus the errors of the next two, continued), the least over the axes of the
+ * image, is what the texel alone is off by. Rounding and fit
  * leave some of that everywhere; one that exceeds the others many times is not theirs.
  */
 #include "validate/certificate_checks.h"
@@ -22,7 +23,7 @@ enum { HOLDS = 6, LOOKED_AT = 10, STREAM_HOLDS = 0x686f6c64 };
 
 /* How many times the median of those looked at, and at least this much: twice what half precision leaves
  * near 1. */
-static const double times_median = 8.0, least_spike = 1e-3;
+static const double times_median = 5.0, least_spike = 1e-3;
 
 /* A departure that half precision and the fit leave anyway. */
 static const double usual = 3e-4;
@@ -33,7 +34,8 @@ typedef struct site {
     size_t texel;
     double score;
     double at[LQ_MAX_AXES], beside[4][LQ_MAX_AXES];
-    int neighbours; /* pairs: 1 or 2 */
+    double weight[4]; /* of the errors beside, which add up to what is expected of it */
+    int neighbours;   /* pairs: 1 or 2 */
     double spike;
 } site;
 
@@ -89,6 +91,18 @@ static bool inside(const lq_domain *domain, int axes, const double *x) {
     return true;
 }
 
+typedef struct pair {
+    size_t first, second;
+} pair;
+
+/* One to either side, whose mean is expected; at an end the next two, which are continued. */
+static pair neighbours_of(size_t i, size_t count, double *weight) {
+    const bool low = i == 0, high = i + 1 == count;
+    weight[0] = low || high ? 2.0 : 0.5;
+    weight[1] = low || high ? -1.0 : 0.5;
+    return low ? (pair){1, 2} : high ? (pair){count - 2, count - 3} : (pair){i - 1, i + 1};
+}
+
 /* Point and neighbours; false where some lie outside of the domain or the piece. */
 static bool place(site *s, const lq_certified *certified, const lq_factor *factor, const double *held) {
     const lq_piece *piece = &certified->subject.factored->pieces[s->piece];
@@ -103,15 +117,17 @@ static bool place(site *s, const lq_certified *certified, const lq_factor *facto
     }
     texel_point(factor, column, row, held, s->at);
     s->neighbours = 0;
-    if (width >= 5 && column > 0 && column + 1 < width) {
-        texel_point(factor, column - 1, row, held, s->beside[0]);
-        texel_point(factor, column + 1, row, held, s->beside[1]);
+    if (width >= 5) {
+        const pair p = neighbours_of(column, width, s->weight);
+        texel_point(factor, p.first, row, held, s->beside[0]);
+        texel_point(factor, p.second, row, held, s->beside[1]);
         s->neighbours = 1;
     }
-    if (height >= 5 && row > 0 && row + 1 < height) {
-        texel_point(factor, column, row - 1, held, s->beside[2 * s->neighbours]);
-        texel_point(factor, column, row + 1, held, s->beside[2 * s->neighbours + 1]);
-        s->neighbours++;
+    if (height >= 5) {
+        const int from = 2 * s->neighbours++;
+        const pair p = neighbours_of(row, height, s->weight + from);
+        texel_point(factor, column, p.first, held, s->beside[from]);
+        texel_point(factor, column, p.second, held, s->beside[from + 1]);
     }
     bool good = s->neighbours > 0 && inside(&both, axes, s->at);
     for (int k = 0; k < 2 * s->neighbours; k++) good = good && inside(&both, axes, s->beside[k]);
@@ -176,9 +192,9 @@ static lq_status find_sites(const lq_certified *certified, site *list, size_t *c
 static lq_status error_at(const lq_certify_request *r, const lq_factored *factored, const double *x,
                           double *off, lq_error *error) {
     double exact, estimate;
-    const lq_status status = lq_eval(r->kind, &r->settings, x, &exact, &estimate, error);
-    *off = lq_factored_lookup(factored, x) - exact;
-    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+    const lq_status status = lq_point_exact(r->kind, &r->settings, r->curve, x, &exact, &estimate, error);
+    *off = (lq_factored_lookup(factored, x) - exact) / (r->relative ? fabs(exact) : 1.0);
+    return status;
 }
 
 static lq_status measure(const lq_certified *certified, site *s, lq_error *error) {
@@ -189,7 +205,8 @@ static lq_status measure(const lq_certified *certified, site *s, lq_error *error
         status = error_at(r, certified->subject.factored, s->beside[k], &off[k], error);
     s->spike = INFINITY;
     for (int k = 0; status == LQ_OK && k < s->neighbours; k++)
-        s->spike = fmin(s->spike, fabs(here - 0.5 * (off[2 * k] + off[2 * k + 1])));
+        s->spike = fmin(s->spike,
+                        fabs(here - s->weight[2 * k] * off[2 * k] - s->weight[2 * k + 1] * off[2 * k + 1]));
     return status;
 }
 

@@ -252,6 +252,7 @@ static int certify(validate_request *request) {
     c->threads = request->threads;
     c->json = request->json;
     if (request->budget > 0.0) c->budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
+    c->has_budget |= request->budget > 0.0;
     return validate_certify(c);
 }
 

@@ -6,10 +6,13 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "pack/measure.h"
 #include "validate/certificate_pack.h"
 #include "validate/report.h"
 
 #include <dirent.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -22,7 +25,7 @@ static bool accept(lq_status status, const lq_error *error) {
 
 bool certify_take_budget(certify_request *request, const char *value) {
     lq_error error = {""};
-    request->wanted = true;
+    request->wanted = request->has_budget = true;
     if (!strchr(value, '=') && access(value, F_OK) == 0)
         return accept(lq_budgets_read(&request->budgets, value, &error), &error);
     request->budgets = (lq_budgets){.count = 1};
@@ -60,8 +63,30 @@ static lq_rule rule_for(const certify_request *request, const char *name, const 
     return rule;
 }
 
-static lq_status make(const certify_request *request, const char *path, lq_certified *certified,
+/* The subject is read. `own`: the budget it came with, for where the request has none. */
+static lq_status make(const certify_request *request, const lq_rule *own, lq_certified *certified,
                       lq_error *error) {
+    const char *kind = certified->subject.origin.kind->id;
+    lq_rule rule = rule_for(request, certified->subject.name, kind);
+    if (own && !request->has_budget) rule.budget = own->budget;
+    if (own && rule.range_count == 0) {
+        rule.range_count = own->range_count;
+        memcpy(rule.ranges, own->ranges, sizeof rule.ranges);
+    }
+    const lq_certify_options options = {.rule = rule,
+                                        .points = request->points,
+                                        .tolerance = request->tolerance,
+                                        .seed = request->seed,
+                                        .threads = request->threads};
+    cli_progress bar;
+    cli_progress_begin(&bar, certified->subject.name);
+    const lq_status status = lq_certified_make(certified, &options, &bar.progress, error);
+    cli_progress_end(&bar);
+    return status;
+}
+
+static lq_status make_file(const certify_request *request, const char *path, lq_certified *certified,
+                           lq_error *error) {
     lq_status status = lq_subject_read(&certified->subject, path, error);
     if (status == LQ_OK && request->table)
         status = certified->subject.factored
@@ -69,18 +94,7 @@ static lq_status make(const certify_request *request, const char *path, lq_certi
                      : LQ_BAD_INPUT;
     if (status == LQ_BAD_INPUT && !error->text[0])
         snprintf(error->text, sizeof error->text, "--table needs a factor file; '%.200s' is a table", path);
-    if (status != LQ_OK) return status;
-    const char *kind = certified->subject.origin.kind->id;
-    const lq_certify_options options = {.rule = rule_for(request, certified->subject.name, kind),
-                                        .points = request->points,
-                                        .tolerance = request->tolerance,
-                                        .seed = request->seed,
-                                        .threads = request->threads};
-    cli_progress bar;
-    cli_progress_begin(&bar, kind);
-    status = lq_certified_make(certified, &options, &bar.progress, error);
-    cli_progress_end(&bar);
-    return status;
+    return status == LQ_OK ? make(request, NULL, certified, error) : status;
 }
 
 /* Everything that was asked for, from one list; the exit code. */
@@ -135,10 +149,42 @@ static lq_status make_folder(const certify_request *request, lq_certified **list
     for (int i = 0; i < found; i++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", request->path, entries[i]->d_name);
-        if (status == LQ_OK) status = make(request, path, &(*list)[(*count)++], error);
+        if (status == LQ_OK) status = make_file(request, path, &(*list)[(*count)++], error);
         free(entries[i]);
     }
     if (found >= 0) free(entries);
+    if (status == LQ_OK) lq_check_pack(*list, *count);
+    return status;
+}
+
+/* What the manifest promises: errors within the budget, for mu, alpha and tau from LQ_MEASURE_FROM up. */
+static lq_rule promise(const lq_shipped *shipped) {
+    static const char *const bounded[] = {"mu", "alpha", "tau"};
+    lq_rule rule = {.range_count = 0};
+    if (isfinite(shipped->p99)) rule.budget.bound[LQ_NORM_P99] = shipped->p99;
+    if (isfinite(shipped->max)) rule.budget.bound[LQ_NORM_MAX] = shipped->max;
+    for (size_t i = 0; i < 3; i++) {
+        lq_range *range = &rule.ranges[rule.range_count++];
+        *range = (lq_range){.min = LQ_MEASURE_FROM, .max = 1.0};
+        snprintf(range->axis, sizeof range->axis, "%s", bounded[i]);
+    }
+    return rule;
+}
+
+static lq_status make_pack(const certify_request *request, lq_certified **list, size_t *count,
+                           lq_error *error) {
+    lq_pack pack;
+    lq_status status = lq_pack_read(&pack, request->path, error);
+    if (status != LQ_OK) return status;
+    *list = calloc(pack.count, sizeof **list);
+    if (!*list) status = LQ_NO_MEMORY;
+    for (size_t i = 0; i < pack.count && status == LQ_OK; i++) {
+        const lq_rule own = promise(&pack.tables[i]);
+        lq_certified *certified = &(*list)[(*count)++];
+        status = lq_subject_ship(&certified->subject, &pack.tables[i], error);
+        if (status == LQ_OK) status = make(request, &own, certified, error);
+    }
+    lq_pack_free(&pack);
     if (status == LQ_OK) lq_check_pack(*list, *count);
     return status;
 }
@@ -154,13 +200,15 @@ int validate_certify(const certify_request *request) {
     lq_status status;
     if (is_folder(request->path) && request->table) {
         return cli_fail("--table needs a factor file; '%s' is a folder", request->path);
+    } else if (is_folder(request->path) && lq_pack_found(request->path)) {
+        status = make_pack(request, &list, &count, &error);
     } else if (is_folder(request->path)) {
         status = make_folder(request, &list, &count, &error);
     } else {
         list = calloc(1, sizeof *list);
         if (!list) return cli_fail("out of memory");
         count = 1;
-        status = make(request, request->path, list, &error);
+        status = make_file(request, request->path, list, &error);
     }
     const int code = status == LQ_OK ? report(request, list, count) : cli_fail_status(status, &error);
     for (size_t i = 0; i < count; i++) lq_certified_free(&list[i]);

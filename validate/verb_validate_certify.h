@@ -29,6 +29,7 @@ typedef struct certify_request {
     bool wanted; /* any of these options, or a budget by norm */
     const char *path;
     lq_budgets budgets;
+    bool has_budget; /* otherwise a pack's own holds */
     lq_rule domain; /* --on */
     const char *table, *junit, *report;
     size_t points;

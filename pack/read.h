@@ -1,0 +1,38 @@
+/* read.h - a pack as it was shipped: manifest.json and the texels of its files. docs/packs.md */
+#ifndef LACQUER_PACK_READ_H
+#define LACQUER_PACK_READ_H
+
+#include "pack/recipe.h"
+#include "pack/texture.h"
+
+/* One table, with the facts of what made it. */
+typedef struct lq_shipped {
+    char name[LQ_NAME_SIZE];
+    const lq_kind *kind; /* lq_is_mapping: one of those */
+    lq_factored *factored;
+    lq_table *table;    /* where there are no factors: its texels, every axis of the kind, and */
+    lq_texture texture; /* the texture itself */
+    double p99, max;    /* budget; INFINITY: none */
+    bool relative;      /* of the budget, and of errors */
+    size_t files;       /* that were read */
+    size_t altered;     /* files whose checksum is not that of the manifest */
+    size_t differing;   /* texels that are not the same in all of them */
+    char suspect[128];  /* the first file that was altered or differs */
+} lq_shipped;
+
+typedef struct lq_pack {
+    char name[LQ_NAME_SIZE];
+    size_t count;
+    lq_shipped *tables;
+} lq_pack;
+
+/* Whether a folder holds a manifest. */
+bool lq_pack_found(const char *folder);
+
+/* Reads every container of every texture. The texels are those of the first listed file. LQ_FORMAT and the
+ * file's name where one is missing or not what the manifest says. */
+lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error);
+void lq_pack_free(lq_pack *pack);
+void lq_shipped_free(lq_shipped *shipped);
+
+#endif

@@ -1,0 +1,48 @@
+/* Chebyshev points of the second kind: weights, and what the tail of the series says (Trefethen 2013, ch. 5
+ * and 8). */
+#include "precompute/series.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+double lq_series_node(const lq_series *s, size_t k) {
+    const double middle = 0.5 * (s->from + s->to), half = 0.5 * (s->to - s->from);
+    return middle - half * cos(pi * (double)k / (double)(s->nodes - 1));
+}
+
+void lq_series_weights(const lq_series *s, double x, double *weight) {
+    double sum = 0.0;
+    const size_t last = s->nodes - 1;
+    for (size_t k = 0; k <= last; k++) {
+        const double gap = x - lq_series_node(s, k), end = k == 0 || k == last ? 0.5 : 1.0;
+        if (fabs(gap) < 1e-13 * (1.0 + fabs(x))) {
+            for (size_t l = 0; l <= last; l++) weight[l] = l == k ? 1.0 : 0.0;
+            return;
+        }
+        weight[k] = (k % 2 ? -end : end) / gap;
+        sum += weight[k];
+    }
+    for (size_t k = 0; k <= last; k++) weight[k] /= sum;
+}
+
+/* Coefficient m of one value, but for its sign. */
+static double coefficient(const lq_series *s, const double *at_node, size_t stride, size_t m) {
+    const size_t last = s->nodes - 1;
+    double sum = 0.0;
+    for (size_t k = 0; k <= last; k++) {
+        const double end = k == 0 || k == last ? 0.5 : 1.0;
+        sum += end * cos(pi * (double)((k * m) % (2 * last)) / (double)last) * at_node[k * stride];
+    }
+    return 2.0 / (double)last * sum;
+}
+
+double lq_series_truncation(const lq_series *s, const double *at_node, size_t stride, size_t step,
+                            size_t count) {
+    double most = 0.0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t m = s->nodes - 3; m < s->nodes; m++)
+            most = fmax(most, (m == s->nodes - 1 ? 0.5 : 1.0) *
+                                  fabs(coefficient(s, at_node + i * step, stride, m)));
+    return 2.0 * most;
+}
