@@ -29,11 +29,13 @@ foreach(source IN LISTS test_programs)
   lacquer_test_properties(${name})
 endforeach()
 
-# A software GPU for the textures and shaders of a pack; without it that test is a skip.
+# A software GPU for the textures and shaders of a pack; without it those tests are skips.
 pkg_check_modules(EGL IMPORTED_TARGET egl glesv2)
 if(EGL_FOUND)
-  target_link_libraries(test_pack_gl PRIVATE PkgConfig::EGL)
-  target_compile_definitions(test_pack_gl PRIVATE LACQUER_EGL)
+  foreach(name test_pack_gl test_pack_gl_shipped)
+    target_link_libraries(${name} PRIVATE PkgConfig::EGL ${CMAKE_DL_LIBS})
+    target_compile_definitions(${name} PRIVATE LACQUER_EGL)
+  endforeach()
 endif()
 
 file(GLOB test_scripts CONFIGURE_DEPENDS "tests/test_*.sh")

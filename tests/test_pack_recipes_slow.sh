@@ -31,6 +31,11 @@ bytes=$(awk '/^all textures/ { print $3 }' realtime.txt)
 awk 'NR > 1 && !/^all/ { n++; if (!($4 > 0 && $4 <= 2e-3 && $5 > 0 && $5 <= 1e-2)) bad = bad " " $1 }
      END { if (n != 10 || bad) { print n " tables, missed:" bad; exit 1 } }' realtime.txt || fail "$(cat realtime.txt)"
 
+# The shipped shaders on a software GPU; 77: there is none.
+code=0
+"${LACQUER_BUILD:-$root/build/release}/test_pack_gl_shipped" "$PWD/realtime" >gl.txt 2>&1 || code=$?
+[ "$code" = 0 ] || [ "$code" = 77 ] || fail "$(cat gl.txt)"
+
 # --------------------------------------------------- the mappings, through the shipped C
 cat >use.c <<'END_OF_C'
 #include <math.h>
