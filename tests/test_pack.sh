@@ -68,6 +68,10 @@ refuse 1 "bad.json:[0-9]+: not JSON" 's/"points": 200,/"points" 200,/'
 refuse 1 "bad.json:7: second|bad.json:8: unknown second table 'dfg'" 's/albedo-average/dfg/'
 refuse 2 "bad.json:[0-9]+: .* misses its budget: best reached p99" 's/"p99": 5e-3/"p99": 2.5e-4/'
 refuse 2 "textures take [0-9]+ bytes; asked are at most 1000" 's/"points"/"max-bytes": 1000, "points"/'
+# A phase function of g < 0 scatters backwards: two modes, and no sigma_g.
+refuse 1 'bad.json:8: g from -0.5 to 0.9; accepted: 0.02 to 0.999' \
+    's/"table": "albedo-average"/"mapping": "sigma-g", "axes": {"g": "-0.5:0.9:64"}/'
+refuse 1 'bad.json:8: unknown mapping .h.; accepted: f, f-inverse, sigma-g' 's/"table": "albedo-average"/"mapping": "h"/'
 mkdir mine && touch mine/thesis.tex
 "$lacquer" pack small.json -o mine 2>message.txt && fail "replaced a folder that is no pack"
 grep -q "cannot replace mine" message.txt && [ "$(ls mine)" = thesis.tex ] || fail "$(cat message.txt)"

@@ -235,5 +235,6 @@ lq_status lq_hard_cases(const lq_hard_run *run, lq_error *error) {
         if (!cases[i].ggx || strcmp(run->ndf, "ggx") == 0) status = examine(run, &cases[i], error);
         if (status == LQ_OK) status = step(&count, error);
     }
+    if (status == LQ_OK) status = lq_hard_mappings(run, error);
     return status == LQ_OK ? examine_grids(run, &count, error) : status;
 }

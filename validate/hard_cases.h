@@ -34,4 +34,7 @@ typedef struct lq_hard_run {
  * range, and where two kinds share the flux they must add up to 1. */
 lq_status lq_hard_cases(const lq_hard_run *run, lq_error *error);
 
+/* Part of it: the roughness mapping of the NDF and the phase function, at their ends. */
+lq_status lq_hard_mappings(const lq_hard_run *run, lq_error *error);
+
 #endif
