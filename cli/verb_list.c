@@ -8,9 +8,12 @@
 static void print_ndfs(void) {
     printf("NDFs (--ndf)\n");
     for (size_t i = 0; i < lq_ndf_count(); i++) printf("  %-17s %s\n", lq_ndf_syntax(i), lq_ndf_title(i));
-    printf("  Every table, random walk and verb takes every NDF; alpha in [0, 1], but where a file or plugin "
-           "has\n"
-           "  fewer roughnesses. See docs/ndf.md.\n");
+    printf("  Every NDF: all tables, random walks, pca, packs with their decode source, certificates, bench. "
+           "Those whose\n"
+           "  roughness reaches from 0 to 1 also: fit, and the mappings f, f-inverse and sigma-g of recipes. "
+           "A file of one\n"
+           "  column or a plugin may have fewer roughnesses: its tables take alpha from there. See "
+           "docs/ndf.md.\n");
 }
 
 static void print_formats(void) {

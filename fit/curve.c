@@ -85,6 +85,15 @@ static double step_down(const lq_curve *curve, double alpha, double value) {
     return exp(lq_root(level_gap, &l, low, level_gap(&l, low), high, above, 2e-15));
 }
 
+/* phi(alpha): v1 of it is v2(alpha). */
+static double step_up(const lq_curve *curve, double alpha) {
+    const crossing l = {curve->v1, chebyshev(curve->v2, alpha)};
+    const double low = log(alpha), high = log(curve->pole), above = level_gap(&l, high);
+    const double below = level_gap(&l, low);
+    if (above <= 0.0 || below >= 0.0) return curve->pole;
+    return exp(lq_root(level_gap, &l, low, below, high, above, 2e-15));
+}
+
 double lq_curve_limit(const lq_curve *curve, double alpha, double *error) {
     double relative = 0.0;
     int n = 0;
@@ -107,8 +116,10 @@ double lq_curve_limit(const lq_curve *curve, double alpha, double *error) {
         alpha = next;
         n++;
     }
-    const double end = lq_lobe_variance(curve->ndf, alpha);
-    if (error) *error = relative + 2.0 * end;
+    /* Where no step was taken the NDF itself is asked; every other end is a roughness of its own, and an NDF
+     * that tabulates would keep a table for each. */
+    const double end = n == 0 ? lq_lobe_variance(curve->ndf, alpha) : exp(chebyshev(curve->v1, alpha));
+    if (error) *error = relative + (n > 0 ? curve->accuracy : 0.0) + 2.0 * end;
     return ldexp(end, n);
 }
 
@@ -186,13 +197,17 @@ double lq_curve_f(const lq_curve *curve, double alpha) {
 double lq_curve_inverse(const lq_curve *curve, double f) {
     if (f <= 0.0) return 0.0;
     if (!(f < INFINITY)) return curve->pole;
-    double low = -40.0, high = 37.0; /* logits: 4e-18 and 1 - 1e-16 */
-    if (f < lq_curve_f(curve, LQ_CURVE_TOP * curve->pole)) high = logit(curve, LQ_CURVE_TOP * curve->pole);
+    const double top = LQ_CURVE_TOP * curve->pole, reached = lq_curve_f(curve, top);
+    int doublings = 0;
+    for (; f >= reached; doublings++) f *= 0.5;
+    double low = -40.0, high = logit(curve, top); /* -40: 4e-18 */
     for (int step = 0; step < 60; step++) {
         const double middle = 0.5 * (low + high);
         *(lq_curve_f(curve, from_logit(curve, middle)) < f ? &low : &high) = middle;
     }
-    return from_logit(curve, 0.5 * (low + high));
+    double alpha = from_logit(curve, 0.5 * (low + high));
+    for (int n = 0; n < doublings; n++) alpha = step_up(curve, alpha);
+    return alpha;
 }
 
 double lq_curve_two_bounces(const lq_curve *curve, double alpha) {

@@ -64,8 +64,9 @@ static lq_status fill(const lq_kind *kind, const lq_curve *curve, lq_table *tabl
     for (size_t i = 0; i < axis->size; i++) {
         const double value = lq_mapping_value(kind, curve, axis->nodes[i]);
         if (!isfinite(value))
-            return lq_fail(error, LQ_BAD_INPUT, "%s: %g at %s = %g; choose a range without it", kind->id,
-                           value, axis->name, axis->nodes[i]);
+            return lq_fail(error, LQ_BAD_INPUT,
+                           "%s: %g at %s = %g; accepted are values below the pole of f, alpha = %.4g for %s",
+                           kind->id, value, axis->name, axis->nodes[i], curve->pole, lq_ndf_text(curve->ndf));
         table->channels[0][i] = (float)value;
     }
     return LQ_OK;

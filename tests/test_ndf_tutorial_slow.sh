@@ -8,7 +8,7 @@ cd "$work"
 
 "${CMAKE_COMMAND:-cmake}" --install "$LACQUER_BUILD" --prefix "$work/prefix" >/dev/null
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name lacquer.pc)")
-export PKG_CONFIG_PATH PATH="$work/prefix/bin:$PATH"
+export PKG_CONFIG_PATH PATH="$work/prefix/bin:$PATH" XDG_CACHE_HOME="$work/cache"
 awk '/^```sh$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$LACQUER_SOURCE/docs/tutorial-ndf.md" >run.sh
 [ "$(grep -c '^lacquer' run.sh)" -ge 8 ] || { echo "FAIL: the tutorial has lost its commands" >&2; exit 1; }
 bash -euo pipefail run.sh >out 2>notes || {
@@ -28,7 +28,12 @@ expect '^(1|0\.99999[0-9]*|1\.0*) ± ' out
 expect '^sech.so: hyperbolic' <(sed 's/^lacquer [a-z]*: //' notes)
 expect 'D scaled by 0\.0868782 at alpha = 1' notes
 expect 'ndf +plugin:sech\.so#[0-9a-f]{16}' out
-[ "$(grep -c '^passed' out)" -eq 2 ] || { cat out; echo "FAIL: both walks pass" >&2; exit 1; }
+[ "$(grep -c '^passed' out)" -eq 6 ] || { cat out; echo "FAIL: two walks and four certificates pass" >&2; exit 1; }
+expect '^all textures +13120' out
+grep -q '"ndf": "plugin:sech.so#' sech/manifest.json || { echo "FAIL: the manifest has another NDF" >&2; exit 1; }
+sed 's/0.02:0.26:256/0.02:0.5:256/' sech.json >pole.json
+lacquer pack pole.json -o pole 2>message && { echo "FAIL: f beyond its pole" >&2; exit 1; }
+expect 'pole of f, alpha = 0.2932 for plugin:sech.so' message
 expect 'one roughness, alpha = 0\.[0-9]+ by its median slope' notes
 # 0.889 of GGX, 0.950, 0.941 of Beckmann; file = plugin to six digits
 grep -E '^[01]\.?[0-9]* ± ' out | awk '{ print $1 }' >values
