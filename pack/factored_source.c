@@ -6,10 +6,27 @@
 
 #include <string.h>
 
+/* One value: no argument, but a name that the rest may use. */
+static bool is_fixed(const lq_factored *factored, int axis) {
+    return factored->axes[axis].min == factored->axes[axis].max;
+}
+
+static void print_fixed(FILE *out, const lq_factored *factored, int axis, lq_language language) {
+    const char *name = factored->axes[axis].name;
+    fprintf(out, "    float %s = ", name);
+    lq_print_number(out, factored->axes[axis].min, language);
+    fputs(";\n", out);
+    if (language == LQ_C) fprintf(out, "    (void)%s;\n", name);
+}
+
 static void print_clamped(FILE *out, const lq_factored *factored, lq_language language) {
     static const char *const clamps[] = {"clamp", "clamp", "lacquer_clamp"};
     for (int a = 0; a < factored->axis_count; a++) {
         const char *name = factored->axes[a].name;
+        if (is_fixed(factored, a)) {
+            print_fixed(out, factored, a, language);
+            continue;
+        }
         fprintf(out, "    %s = %s(%s, ", name, clamps[language], name);
         lq_print_number(out, factored->axes[a].min, language);
         fputs(", ", out);
@@ -133,7 +150,7 @@ static void print_arguments(FILE *out, lq_language language, const lq_factored_t
         fprintf(out, "%s%st%s", i > 0 ? ", " : "", types[language], textures->bases[i].suffix);
     if (language == LQ_HLSL) fputs(", SamplerState linear_clamp", out);
     for (int a = 0; a < textures->factored->axis_count; a++)
-        fprintf(out, ", float %s", textures->factored->axes[a].name);
+        if (!is_fixed(textures->factored, a)) fprintf(out, ", float %s", textures->factored->axes[a].name);
 }
 
 static void print_comment(FILE *out, const lq_factored_textures *textures, const lq_kind *kind) {

@@ -41,6 +41,9 @@ static const char recipe[] =
     "\"0.4:0.9:20\"},\n"
     " \"tolerance\": 1e-3, \"budget\": {\"max\": 2e-1}, \"pca\": {\"separate\": \"alpha:5\", \"critical\": "
     "true}},\n"
+    "{\"table\": \"fgd-dielectric\", \"name\": \"one-alpha\", \"tolerance\": 1e-3,\n"
+    " \"axes\": {\"mu\": \"0.02:1:24:sqrt\", \"alpha\": \"0.3\", \"eta\": \"1.2:2:8\"}, \"pca\": "
+    "{\"separate\": \"eta:3\"}},\n"
     "{\"table\": \"dfg\", \"axes\": {\"mu\": \"0.02:1:24:sqrt\", \"alpha\": \"0.02:1:24\"}, \"tolerance\": "
     "1e-4},\n"
     "{\"mapping\": \"f\", \"axes\": {\"alpha\": \"0.02:0.9:256\"}, \"pca\": {\"value\": \"square\"}},\n"
@@ -76,6 +79,7 @@ typedef struct table {
     int axis_count, channels; /* of the function */
     int from[LQ_MAX_AXES];    /* which axis of the kind each argument is */
     double min[LQ_MAX_AXES], max[LQ_MAX_AXES];
+    double fixed[LQ_MAX_AXES]; /* of the kind's axes: the value of those that are no argument */
 } table;
 
 static table describe(const lq_shipped *s) {
@@ -85,17 +89,19 @@ static table describe(const lq_shipped *s) {
         if (*c == '-' || *c == '.') *c = '_';
     if (!s->factored) {
         t.count = 1;
-        t.axis_count = s->texture.axis_count;
     } else {
         for (int p = 0; p < s->factored->piece_count; p++)
             for (int f = 0; f < s->factored->pieces[p].factor_count; f++)
                 snprintf(t.suffix[t.count++], sizeof t.suffix[0], "%d_%d", p, f);
-        t.axis_count = s->factored->axis_count;
     }
-    for (int a = 0; a < t.axis_count; a++) {
-        t.from[a] = s->factored ? a : s->texture.from[a];
-        t.min[a] = s->factored ? s->factored->axes[a].min : s->texture.axes[a].min;
-        t.max[a] = s->factored ? s->factored->axes[a].max : s->texture.axes[a].max;
+    for (int a = 0; a < s->kind->axis_count; a++) {
+        const double min = s->factored ? s->factored->axes[a].min : s->table->axes[a].min;
+        const double max = s->factored ? s->factored->axes[a].max : s->table->axes[a].max;
+        t.fixed[a] = min;
+        if (min == max) continue; /* no argument */
+        t.from[t.axis_count] = a;
+        t.min[t.axis_count] = min;
+        t.max[t.axis_count++] = max;
     }
     return t;
 }
@@ -193,7 +199,8 @@ static bool have(const char *tool) {
     return system(command) == 0;
 }
 
-/* spirv-cross names a texture with its sampler "SPIRV_Cross_Combinedunit3linear_clamp": let it start with unit3. */
+/* spirv-cross names a texture with its sampler "SPIRV_Cross_Combinedunit3linear_clamp": let it start with
+ * unit3. */
 static void plain_names(char *text) {
     static const char before[] = "SPIRV_Cross_Combinedunit";
     for (char *name; (name = strstr(text, before));)
@@ -260,7 +267,8 @@ static double from_exact(const table *t, const float *points, const float *value
         assert_int_equal(lq_origin_of_facts(facts, count, &origin, &error), LQ_OK);
     }
     for (size_t i = 0; i < EXACT; i++) {
-        double x[LQ_MAX_AXES] = {0.0}, exact[LQ_MAX_CHANNELS], estimate;
+        double x[LQ_MAX_AXES], exact[LQ_MAX_CHANNELS], estimate;
+        memcpy(x, t->fixed, sizeof x);
         for (int a = 0; a < t->axis_count; a++) x[t->from[a]] = (double)points[4 * i + (size_t)a];
         if (s->relative) exact[0] = lq_mapping_value(s->kind, &curve, x[0]);
         else lq_eval(s->kind, &origin.settings, x, exact, &estimate, &error);
