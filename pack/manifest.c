@@ -4,6 +4,7 @@
 #include "pack/folder.h"
 #include "pack/source.h"
 #include "pca/factors_json.h"
+#include "tables/exr_layout.h"
 #include "tables/input.h"
 #include "tables/output.h"
 #include "tables/status.h"
@@ -153,6 +154,14 @@ static json_t *describe_structure(const lq_factored *factored) {
     return structure;
 }
 
+/* The nodes of the table that was factored. */
+static json_t *describe_table_axes(const lq_recipe_table *from) {
+    json_t *axes = json_array();
+    for (int a = 0; a < from->kind->axis_count; a++)
+        json_array_append_new(axes, lq_axis_to_json(&from->axes[a]));
+    return axes;
+}
+
 /* Axes of one value, which the texture has not. */
 static json_t *describe_fixed(const lq_recipe_table *from) {
     json_t *fixed = json_object();
@@ -176,6 +185,7 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, 
         json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
         json_object_set_new(table, "textures", describe_factors(recipe, packed, folder));
         json_object_set_new(table, "structure", describe_structure(packed->factored));
+        json_object_set_new(table, "table-axes", describe_table_axes(from));
     } else {
         json_t *axes = json_array(), *channels = json_array();
         for (int a = 0; a < texture->axis_count; a++)

@@ -6,6 +6,7 @@
 #include "pca/factors.h"
 #include "pca/factors_json.h"
 #include "tables/axis.h"
+#include "tables/exr_layout.h"
 #include "tables/input.h"
 #include "tables/status.h"
 
@@ -118,6 +119,11 @@ static lq_status read_factored(const reader *r, json_t *item, lq_shipped *s) {
     lq_error cause = {""};
     if (lq_factored_from_json(structure, s->factored, &cause) != LQ_OK) return refuse(r, s->name, cause.text);
     lq_status status = LQ_OK;
+    for (int a = 0; a < s->kind->axis_count && status == LQ_OK; a++) {
+        json_t *axis = json_array_get(json_object_get(item, "table-axes"), (size_t)a);
+        if (axis && lq_axis_from_json(axis, &s->axes[a], &cause) != LQ_OK)
+            status = refuse(r, s->name, cause.text);
+    }
     for (int p = 0; p < s->factored->piece_count; p++)
         for (int f = 0; f < s->factored->pieces[p].factor_count && status == LQ_OK; f++)
             status = read_factor(r, json_array_get(textures, next++), &s->factored->pieces[p].factors[f], s);
@@ -244,6 +250,7 @@ void lq_shipped_free(lq_shipped *s) {
     lq_factored_free(s->factored);
     lq_table_free(s->table);
     lq_texture_free(&s->texture);
+    for (int a = 0; a < LQ_MAX_AXES; a++) lq_axis_free(&s->axes[a]);
     *s = (lq_shipped){.files = 0};
 }
 

@@ -10,6 +10,7 @@ typedef struct lq_shipped {
     char name[LQ_NAME_SIZE];
     const lq_kind *kind; /* lq_is_mapping: one of those */
     lq_factored *factored;
+    lq_axis axes[LQ_MAX_AXES]; /* with factors: of the table they were made from; size 0: not known */
     lq_table *table;    /* where there are no factors: its texels, every axis of the kind, and */
     lq_texture texture; /* the texture itself */
     double p99, max;    /* budget; INFINITY: none */

@@ -43,6 +43,10 @@ done
 grep -q '<testsuite name="r01"' good.xml && grep -q '</html>' page/index.html || fail "reports"
 "$lacquer" validate good --points 3000 >quick.txt
 "$lacquer" validate good --points 3000 --threads 1 | diff quick.txt - || fail "the report depends on the threads"
+"$lacquer" validate good --points 3000 --parts >parts.txt || fail "with parts: $(cat parts.txt)"
+for part in integration interpolation factorisation half-float filter; do
+    [ "$(grep -c "^  $part  " parts.txt)" -ge 2 ] || fail "no $part in $(cat parts.txt)"
+done
 code=0
 "$lacquer" validate good --points 3000 --budget max=1e-4 >/dev/null || code=$?
 [ "$code" = 2 ] || fail "a budget that is missed: exit $code"

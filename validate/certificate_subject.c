@@ -139,7 +139,9 @@ lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, lq_error *error) {
     snprintf(s->name, sizeof s->name, "%s", shipped->name);
     snprintf(s->suspect, sizeof s->suspect, "%s", shipped->suspect);
     const lq_kind *kind = shipped->kind;
-    *shipped = (lq_shipped){.files = 0};
+    shipped->table = NULL;
+    shipped->factored = NULL;
+    shipped->texture = (lq_texture){0};
     lq_error cause = {""};
     lq_status status = s->factored ? copy_factored(s->factored, &s->unrounded, &cause)
                                    : copy_unrounded(s->table, &s->unrounded_table, &cause);
@@ -155,6 +157,15 @@ lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, lq_error *error) {
     if (status == LQ_OK) status = lq_ndf_open(&s->origin.settings.opened, s->origin.settings.ndf, &cause);
     if (status == LQ_OK && s->curve) status = lq_curve_make(s->curve, s->origin.settings.opened, &cause);
     return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%.200s: %.300s", s->name, cause.text);
+}
+
+lq_status lq_subject_make_table(lq_subject *s, const lq_axis *axes, const lq_progress *progress,
+                                lq_error *error) {
+    const lq_kind *kind = s->origin.kind;
+    const lq_status status = lq_is_mapping(kind)
+                                 ? lq_mapping_table(kind, &s->origin.settings, axes, &s->table, error)
+                                 : lq_precompute(kind, &s->origin.settings, axes, progress, &s->table, error);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }
 
 lq_status lq_subject_add_table(lq_subject *s, const char *path, lq_error *error) {

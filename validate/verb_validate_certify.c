@@ -44,6 +44,9 @@ bool certify_take(certify_request *request, int id, const char *value) {
     case CERTIFY_JUNIT:
         request->junit = value;
         return cli_output_check(value);
+    case CERTIFY_PARTS:
+        request->parts = true;
+        break;
     case CERTIFY_REPORT:
         request->report = value;
         break;
@@ -171,6 +174,19 @@ static lq_rule promise(const lq_shipped *shipped) {
     return rule;
 }
 
+/* What the factors of a pack were made from, where they are factors. */
+static lq_status make_table(const lq_shipped *shipped, lq_certified *certified, lq_error *error) {
+    lq_subject *s = &certified->subject;
+    cli_progress bar;
+    char label[300];
+    if (!s->factored || shipped->axes[0].size == 0) return LQ_OK;
+    snprintf(label, sizeof label, "%s, its table", s->name);
+    cli_progress_begin(&bar, label);
+    const lq_status status = lq_subject_make_table(s, shipped->axes, &bar.progress, error);
+    cli_progress_end(&bar);
+    return status;
+}
+
 static lq_status make_pack(const certify_request *request, lq_certified **list, size_t *count,
                            lq_error *error) {
     lq_pack pack;
@@ -182,6 +198,7 @@ static lq_status make_pack(const certify_request *request, lq_certified **list, 
         const lq_rule own = promise(&pack.tables[i]);
         lq_certified *certified = &(*list)[(*count)++];
         status = lq_subject_ship(&certified->subject, &pack.tables[i], error);
+        if (status == LQ_OK && request->parts) status = make_table(&pack.tables[i], certified, error);
         if (status == LQ_OK) status = make(request, &own, certified, error);
     }
     lq_pack_free(&pack);

@@ -12,7 +12,8 @@ enum {
     CERTIFY_TABLE,
     CERTIFY_JUNIT,
     CERTIFY_REPORT,
-    CERTIFY_LAST = CERTIFY_REPORT
+    CERTIFY_PARTS,
+    CERTIFY_LAST = CERTIFY_PARTS
 };
 
 /* Rows for the option list of the verb. */
@@ -21,6 +22,7 @@ enum {
      "certify: 100000 points against the solver, worst point, error parts, physics"},                        \
         {CERTIFY_ON, "on", "A=MIN:MAX,...", "certify this part of the axes only (default: all of them)"},    \
         {CERTIFY_TABLE, "table", "FILE", "the table that a factor file was made from, for its error parts"}, \
+        {CERTIFY_PARTS, "parts", NULL, "of a pack: compute those tables anew, for all error parts"},         \
         {CERTIFY_JUNIT, "junit", "FILE", "write the certificate's judgements as JUnit XML"}, {               \
         CERTIFY_REPORT, "report", "DIR", "write the certificate as a web page, DIR/index.html"               \
     }
@@ -29,6 +31,7 @@ typedef struct certify_request {
     bool wanted; /* any of these options, or a budget by norm */
     const char *path;
     lq_budgets budgets;
+    bool parts;
     bool has_budget; /* otherwise a pack's own holds */
     lq_rule domain; /* --on */
     const char *table, *junit, *report;
