@@ -252,15 +252,24 @@ void lq_ndf_range(const lq_ndf *ndf, double *alpha_min, double *alpha_max);
  *                                        Plugins
  * ====================================================================================== */
 
+/* clang-format off */
 /* An NDF of your own: a shared object with this function, opened as "plugin:PATH.so" (docs/tutorial-ndf.md).
  *
  *     #include <lacquer.h>
  *     static void density(double alpha, size_t count, const double *cos2, const double *sin2, double *d)
- * {...} const lq_ndf_plugin *lacquer_ndf_plugin(void) { static const lq_ndf_plugin plugin =
- * {LQ_NDF_PLUGIN_VERSION, sizeof plugin, "title", "source", 0.0, 1.0, density}; return &plugin;
+ *     {
+ *         ...
  *     }
+ *     const lq_ndf_plugin *lacquer_ndf_plugin(void)
+ *     {
+ *         static const lq_ndf_plugin plugin = {LQ_NDF_PLUGIN_VERSION, sizeof plugin, "title", "source",
+ *                                              0.0, 1.0, density};
+ *         return &plugin;
+ *     }
+ *
  *     cc -O2 -shared -fPIC plugin.c -o plugin.so
  */
+/* clang-format on */
 #define LQ_NDF_PLUGIN_VERSION 1
 
 typedef struct lq_ndf_plugin {

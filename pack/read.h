@@ -11,14 +11,14 @@ typedef struct lq_shipped {
     const lq_kind *kind; /* lq_is_mapping: one of those */
     lq_factored *factored;
     lq_axis axes[LQ_MAX_AXES]; /* with factors: of the table they were made from; size 0: not known */
-    lq_table *table;    /* where there are no factors: its texels, every axis of the kind, and */
-    lq_texture texture; /* the texture itself */
-    double p99, max;    /* budget; INFINITY: none */
-    bool relative;      /* of the budget, and of errors */
-    size_t files;       /* that were read */
-    size_t altered;     /* files whose checksum is not that of the manifest */
-    size_t differing;   /* texels that are not the same in all of them */
-    char suspect[128];  /* the first file that was altered or differs */
+    lq_table *table;           /* where there are no factors: its texels, every axis of the kind, and */
+    lq_texture texture;        /* the texture itself */
+    double p99, max;           /* budget; INFINITY: none */
+    bool relative;             /* of the budget, and of errors */
+    size_t files;              /* that were read */
+    size_t altered;            /* files whose checksum is not that of the manifest */
+    size_t differing;          /* texels that are not the same in all of them */
+    char suspect[128];         /* the first file that was altered or differs */
 } lq_shipped;
 
 typedef struct lq_pack {

@@ -1,6 +1,6 @@
 /* assemble.h - bases of any scheme into the half-float textures of a piece. */
-#ifndef LQ_PCA_ASSEMBLE_H
-#define LQ_PCA_ASSEMBLE_H
+#ifndef LACQUER_PCA_ASSEMBLE_H
+#define LACQUER_PCA_ASSEMBLE_H
 
 #include "pca/refine.h"
 #include "pca/unfold.h"

@@ -1,6 +1,6 @@
 /* factors.h - making factored tables, and evaluating their parts; lacquer.h says what they are. */
-#ifndef LQ_PCA_FACTORS_H
-#define LQ_PCA_FACTORS_H
+#ifndef LACQUER_PCA_FACTORS_H
+#define LACQUER_PCA_FACTORS_H
 
 #include "lacquer.h"
 

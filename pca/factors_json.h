@@ -1,6 +1,6 @@
 /* factors_json.h - the structure of a factored table as JSON text; the texels lie beside it. */
-#ifndef LQ_PCA_FACTORS_JSON_H
-#define LQ_PCA_FACTORS_JSON_H
+#ifndef LACQUER_PCA_FACTORS_JSON_H
+#define LACQUER_PCA_FACTORS_JSON_H
 
 #include "lacquer.h"
 

@@ -1,7 +1,7 @@
 /* low_rank.h - matrices as products of two thin ones, through LAPACKE and BLAS. Results do not depend on the
  * number of threads: work is cut into pieces of fixed size, and every sum has one order. */
-#ifndef LQ_PCA_LOW_RANK_H
-#define LQ_PCA_LOW_RANK_H
+#ifndef LACQUER_PCA_LOW_RANK_H
+#define LACQUER_PCA_LOW_RANK_H
 
 #include "lacquer.h"
 

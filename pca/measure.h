@@ -1,6 +1,6 @@
 /* measure.h - what errors are measured against where nothing computes exact values. */
-#ifndef LQ_PCA_MEASURE_H
-#define LQ_PCA_MEASURE_H
+#ifndef LACQUER_PCA_MEASURE_H
+#define LACQUER_PCA_MEASURE_H
 
 #include "lacquer.h"
 

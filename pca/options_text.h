@@ -1,6 +1,7 @@
-/* options_text.h - parts of lq_pca_options as text that names axes: the command line's, and that of recipes. */
-#ifndef LQ_PCA_OPTIONS_TEXT_H
-#define LQ_PCA_OPTIONS_TEXT_H
+/* options_text.h - parts of lq_pca_options as text that names axes: the command line's, and that of recipes.
+ */
+#ifndef LACQUER_PCA_OPTIONS_TEXT_H
+#define LACQUER_PCA_OPTIONS_TEXT_H
 
 #include "lacquer.h"
 

@@ -1,6 +1,6 @@
 /* piece.h - one box of a table into factors. */
-#ifndef LQ_PCA_PIECE_H
-#define LQ_PCA_PIECE_H
+#ifndef LACQUER_PCA_PIECE_H
+#define LACQUER_PCA_PIECE_H
 
 #include "pca/unfold.h"
 

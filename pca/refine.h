@@ -1,7 +1,7 @@
 /* refine.h - all factors of a piece fitted together: weighted alternating least squares, Gauss-Newton through
  * the value transform, and reweighting towards the largest error. */
-#ifndef LQ_PCA_REFINE_H
-#define LQ_PCA_REFINE_H
+#ifndef LACQUER_PCA_REFINE_H
+#define LACQUER_PCA_REFINE_H
 
 #include "lacquer.h"
 

@@ -1,6 +1,6 @@
 /* refine_parts.h - the small systems of refine.c. */
-#ifndef LQ_PCA_REFINE_PARTS_H
-#define LQ_PCA_REFINE_PARTS_H
+#ifndef LACQUER_PCA_REFINE_PARTS_H
+#define LACQUER_PCA_REFINE_PARTS_H
 
 #include "pca/refine.h"
 

@@ -1,6 +1,6 @@
 /* sequential.h - the plain scheme of D22 sec. 4. */
-#ifndef LQ_PCA_SEQUENTIAL_H
-#define LQ_PCA_SEQUENTIAL_H
+#ifndef LACQUER_PCA_SEQUENTIAL_H
+#define LACQUER_PCA_SEQUENTIAL_H
 
 #include "pca/assemble.h"
 

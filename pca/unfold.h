@@ -1,6 +1,6 @@
 /* unfold.h - a table, sampled at the texels of a plane (rows) and of the axes separated from it (columns). */
-#ifndef LQ_PCA_UNFOLD_H
-#define LQ_PCA_UNFOLD_H
+#ifndef LACQUER_PCA_UNFOLD_H
+#define LACQUER_PCA_UNFOLD_H
 
 #include "lacquer.h"
 

@@ -27,7 +27,8 @@ lq_status lq_refine(lq_rough *rough, double eta, double tolerance, lq_level_valu
     /* Levels 0 and 1 have the same angles between ray and facet, and from the denser side these tell. */
     const int first = lq_dielectric_is_nearly_matched(rough, eta) ? 2 : eta < 1.0 ? 1 : 0;
     *estimate = 1.0;
-    for (int level = first; status == LQ_OK && level<LQ_DIELECTRIC_LEVELS && * estimate> tolerance; level++) {
+    for (int level = first; level < LQ_DIELECTRIC_LEVELS; level++) {
+        if (*estimate <= tolerance) break;
         status = evaluate(rough, eta, level, asked, now, error);
         if (status != LQ_OK) break;
         double change = 0.0;

@@ -179,7 +179,7 @@ static lq_status check_increasing(const lq_axis *axis, lq_error *error) {
 static lq_status start(lq_axis *axis, const char *name, size_t size, lq_error *error) {
     memset(axis, 0, sizeof *axis);
     lq_status status = lq_name_check("axis", name, error);
-    if (!status) status = check_size(name, size, error);
+    if (status == LQ_OK) status = check_size(name, size, error);
     if (status) return status;
     memcpy(axis->name, name, strlen(name) + 1);
     axis->size = size;
@@ -205,8 +205,8 @@ lq_status lq_axis_make(lq_axis *axis, const char *name, double min, double max, 
     axis->min = min;
     axis->max = max;
     status = check_map(axis, map, exponent, error);
-    if (!status) status = check_range(axis, error);
-    if (!status) status = allocate_nodes(axis, error);
+    if (status == LQ_OK) status = check_range(axis, error);
+    if (status == LQ_OK) status = allocate_nodes(axis, error);
     if (status) return finish(axis, status);
     for (size_t i = 0; i < size; i++) axis->nodes[i] = node_at(axis, i);
     return finish(axis, check_increasing(axis, error));
@@ -215,15 +215,15 @@ lq_status lq_axis_make(lq_axis *axis, const char *name, double min, double max, 
 lq_status lq_axis_make_custom(lq_axis *axis, const char *name, const double *nodes, size_t size,
                               lq_error *error) {
     lq_status status = start(axis, name, size, error);
-    if (!status && !nodes) status = lq_fail(error, LQ_BAD_INPUT, "axis '%s' without its nodes", name);
-    if (!status) status = allocate_nodes(axis, error);
+    if (status == LQ_OK && !nodes) status = lq_fail(error, LQ_BAD_INPUT, "axis '%s' without its nodes", name);
+    if (status == LQ_OK) status = allocate_nodes(axis, error);
     if (status) return finish(axis, status);
     memcpy(axis->nodes, nodes, size * sizeof *nodes);
     axis->map = LQ_MAP_CUSTOM;
     axis->min = nodes[0];
     axis->max = nodes[size - 1];
     status = check_range(axis, error);
-    if (!status) status = check_increasing(axis, error);
+    if (status == LQ_OK) status = check_increasing(axis, error);
     return finish(axis, status);
 }
 
@@ -303,13 +303,13 @@ static lq_status parse_list(lq_axis *axis, const char *name, char *text, lq_erro
     double *nodes = malloc(count * sizeof *nodes);
     if (!nodes) return lq_fail(error, LQ_NO_MEMORY, "axis '%s': no memory for %zu nodes", name, count);
     char *part = text;
-    for (size_t i = 0; i < count && !status; i++) {
+    for (size_t i = 0; i < count && status == LQ_OK; i++) {
         char *comma = strchr(part, ',');
         if (comma) *comma = '\0';
         if (!parse_number(part, &nodes[i])) status = refuse(name, part, "is not a number", error);
         part = comma ? comma + 1 : part;
     }
-    if (!status) status = lq_axis_make_custom(axis, name, nodes, count, error);
+    if (status == LQ_OK) status = lq_axis_make_custom(axis, name, nodes, count, error);
     free(nodes);
     return status;
 }

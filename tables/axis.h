@@ -1,6 +1,6 @@
 /* axis.h - what the rooms share about axes beyond lacquer.h. */
-#ifndef LQ_TABLES_AXIS_H
-#define LQ_TABLES_AXIS_H
+#ifndef LACQUER_TABLES_AXIS_H
+#define LACQUER_TABLES_AXIS_H
 
 #include "lacquer.h"
 

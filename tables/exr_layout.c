@@ -98,13 +98,13 @@ static lq_status parse_nodes(lq_axis *axis, const char *name, json_int_t size, c
     double *nodes = malloc(count * sizeof *nodes);
     if (!nodes) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu nodes", count);
     lq_status status = LQ_OK;
-    for (size_t i = 0; i < count && !status; i++) {
+    for (size_t i = 0; i < count && status == LQ_OK; i++) {
         const json_t *node = json_array_get(array, i);
         nodes[i] = json_number_value(node);
         if (!json_is_number(node))
             status = lq_fail(error, LQ_FORMAT, "axis '%.40s': node %zu is not a number", name, i);
     }
-    if (!status) status = lq_axis_make_custom(axis, name, nodes, count, error);
+    if (status == LQ_OK) status = lq_axis_make_custom(axis, name, nodes, count, error);
     free(nodes);
     return status;
 }
@@ -133,12 +133,12 @@ lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_erro
     if (!array) return LQ_FORMAT;
     lq_status status = LQ_OK;
     size_t size = json_array_size(array);
-    while ((size_t)*count < size && !status) {
+    while ((size_t)*count < size && status == LQ_OK) {
         status = lq_axis_from_json(json_array_get(array, (size_t)*count), &axes[*count], error);
-        if (!status) ++*count;
+        if (status == LQ_OK) ++*count;
     }
     json_decref(array);
-    if (!status) return LQ_OK;
+    if (status == LQ_OK) return LQ_OK;
     while (*count > 0) lq_axis_free(&axes[--*count]);
     return status == LQ_NO_MEMORY ? status : LQ_FORMAT; /* what an axis refuses is damage in a file */
 }
@@ -152,7 +152,7 @@ lq_status lq_exr_parse_names(const char *text, size_t limit, char ***names, size
     lq_status status = LQ_OK;
     *names = calloc(size + 1, sizeof **names);
     if (!*names) status = lq_fail(error, LQ_NO_MEMORY, "no memory for %zu names", size);
-    while (*count < size && !status) {
+    while (*count < size && status == LQ_OK) {
         const char *name = json_string_value(json_array_get(array, *count));
         if (lq_name_check("stored", name, error)) status = LQ_FORMAT;
         else if (!((*names)[(*count)++] = strdup(name)))
@@ -207,7 +207,7 @@ lq_status lq_exr_checksum(const lq_table *table, uint32_t *sum, lq_error *error)
         *sum = sum_text(*sum, table->facts[i].value);
     }
     lq_status status = LQ_OK;
-    for (int c = 0; c < table->channel_count && !status; c++) {
+    for (int c = 0; c < table->channel_count && status == LQ_OK; c++) {
         *sum = sum_text(*sum, table->channel_names[c]);
         status = sum_channel(table->channels[c], lq_table_entries(table) * sizeof(float), sum, error);
     }

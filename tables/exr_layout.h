@@ -1,6 +1,6 @@
 /* exr_layout.h - what the writer and the reader of EXR tables agree on: attributes, JSON, checksum. */
-#ifndef LQ_TABLES_EXR_LAYOUT_H
-#define LQ_TABLES_EXR_LAYOUT_H
+#ifndef LACQUER_TABLES_EXR_LAYOUT_H
+#define LACQUER_TABLES_EXR_LAYOUT_H
 
 #include <jansson.h>
 #include <stdint.h>

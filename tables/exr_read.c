@@ -212,9 +212,9 @@ static lq_status make_table(reader *r, const lq_axis *axes, int axis_count, lq_e
     lq_status status = lq_exr_parse_names(text, LQ_MAX_CHANNELS, &names, &count, error);
     if (status) return refuse(r, status, error ? error->text : "", error);
     status = check_channels(r, names, count, error);
-    if (!status) status = check_window(r, axes, axis_count, error);
-    if (!status) status = check_capacity(r, count, error);
-    if (!status) {
+    if (status == LQ_OK) status = check_window(r, axes, axis_count, error);
+    if (status == LQ_OK) status = check_capacity(r, count, error);
+    if (status == LQ_OK) {
         status = lq_table_create(&r->table, axes, axis_count, (const char *const *)names, (int)count, error);
         if (status == LQ_BAD_INPUT) status = LQ_FORMAT;
         if (status) refuse(r, status, error ? error->text : "", error);
@@ -250,7 +250,7 @@ static lq_status read_facts(reader *r, lq_error *error) {
     size_t count;
     lq_status status = lq_exr_parse_names(text, 0, &keys, &count, error);
     if (status) return refuse(r, status, error ? error->text : "", error);
-    for (size_t i = 0; i < count && !status; i++) status = read_fact(r, keys[i], error);
+    for (size_t i = 0; i < count && status == LQ_OK; i++) status = read_fact(r, keys[i], error);
     lq_exr_free_names(keys, count);
     return status;
 }
@@ -331,14 +331,14 @@ static lq_status check_sum(const reader *r, lq_error *error) {
 
 static lq_status read_all(reader *r, lq_error *error) {
     lq_status status = open_file(r, error);
-    if (!status) status = check_kind(r, error);
-    if (!status) status = start(r, error);
-    if (!status) status = check_version(r, error);
-    if (!status) status = check_storage(r, error);
-    if (!status) status = read_axes(r, error);
-    if (!status) status = read_facts(r, error);
-    if (!status) status = read_data(r, error);
-    if (!status) status = check_sum(r, error);
+    if (status == LQ_OK) status = check_kind(r, error);
+    if (status == LQ_OK) status = start(r, error);
+    if (status == LQ_OK) status = check_version(r, error);
+    if (status == LQ_OK) status = check_storage(r, error);
+    if (status == LQ_OK) status = read_axes(r, error);
+    if (status == LQ_OK) status = read_facts(r, error);
+    if (status == LQ_OK) status = read_data(r, error);
+    if (status == LQ_OK) status = check_sum(r, error);
     return status;
 }
 

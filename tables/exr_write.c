@@ -278,7 +278,7 @@ static lq_status measure(writer *w, lq_error *error) {
 lq_status lq_table_write_exr(const lq_table *table, const char *path, lq_error *error) {
     writer w = {.table = table, .path = path};
     lq_status status = measure(&w, error);
-    if (!status) status = lq_output_open(&w.output, path, error);
+    if (status == LQ_OK) status = lq_output_open(&w.output, path, error);
     if (status) return status;
     if (write_header(&w)) write_chunks(&w);
     if (w.context) check(&w, exr_finish(&w.context)); /* writes the table of chunk offsets */

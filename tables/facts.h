@@ -1,6 +1,6 @@
 /* facts.h - lists of facts, of whatever carries its provenance with it. */
-#ifndef LQ_TABLES_FACTS_H
-#define LQ_TABLES_FACTS_H
+#ifndef LACQUER_TABLES_FACTS_H
+#define LACQUER_TABLES_FACTS_H
 
 #include "lacquer.h"
 

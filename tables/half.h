@@ -1,6 +1,6 @@
 /* half.h - binary16 as textures store it: round to nearest, ties to even. */
-#ifndef LQ_TABLES_HALF_H
-#define LQ_TABLES_HALF_H
+#ifndef LACQUER_TABLES_HALF_H
+#define LACQUER_TABLES_HALF_H
 
 #include <stdint.h>
 

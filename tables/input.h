@@ -1,6 +1,6 @@
 /* input.h - whole files into memory. */
-#ifndef LQ_TABLES_INPUT_H
-#define LQ_TABLES_INPUT_H
+#ifndef LACQUER_TABLES_INPUT_H
+#define LACQUER_TABLES_INPUT_H
 
 #include "lacquer.h"
 

@@ -57,10 +57,10 @@ lq_status lq_table_write_npy(const lq_table *table, const char *path, lq_error *
     lq_status status = lq_output_open(&output, path, error);
     if (status) return status;
     status = write_header(table, output, error);
-    if (!status && table->channel_count == 1)
+    if (status == LQ_OK && table->channel_count == 1)
         status = lq_output_write(output, table->channels[0], lq_table_entries(table) * sizeof(float), error);
-    else if (!status) status = write_interleaved(table, output, error);
-    if (!status) return lq_output_commit(output, error);
+    else if (status == LQ_OK) status = write_interleaved(table, output, error);
+    if (status == LQ_OK) return lq_output_commit(output, error);
     lq_output_abandon(output);
     return status;
 }

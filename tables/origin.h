@@ -1,6 +1,6 @@
 /* What made a stored table: its kind and settings, rebuilt from its facts. */
-#ifndef LQ_TABLES_ORIGIN_H
-#define LQ_TABLES_ORIGIN_H
+#ifndef LACQUER_TABLES_ORIGIN_H
+#define LACQUER_TABLES_ORIGIN_H
 
 #include "lacquer.h"
 

@@ -130,7 +130,7 @@ lq_status lq_output_open(lq_output **output, const char *path, lq_error *error) 
     }
     made->file = -1;
     lq_status status = inspect(made, error);
-    if (!status) status = open_file(made, error);
+    if (status == LQ_OK) status = open_file(made, error);
     if (status) lq_output_abandon(made);
     else *output = made;
     return status;
@@ -245,7 +245,7 @@ static lq_status publish(lq_output *output, lq_error *error) {
 
 lq_status lq_output_commit(lq_output *output, lq_error *error) {
     lq_status status = flush(output, error);
-    if (!status) status = publish(output, error);
+    if (status == LQ_OK) status = publish(output, error);
     lq_output_abandon(output);
     return status;
 }

@@ -1,6 +1,6 @@
 /* output.h - files that appear whole or not at all; every writer of the project goes through here. */
-#ifndef LQ_TABLES_OUTPUT_H
-#define LQ_TABLES_OUTPUT_H
+#ifndef LACQUER_TABLES_OUTPUT_H
+#define LACQUER_TABLES_OUTPUT_H
 
 #include <stdint.h>
 

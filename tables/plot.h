@@ -1,6 +1,6 @@
 /* Charts as SVG: a few named series over linear or logarithmic axes, readable on light and dark pages. */
-#ifndef LQ_TABLES_PLOT_H
-#define LQ_TABLES_PLOT_H
+#ifndef LACQUER_TABLES_PLOT_H
+#define LACQUER_TABLES_PLOT_H
 
 #include "lacquer.h"
 

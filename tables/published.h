@@ -1,7 +1,7 @@
 /* published.h - what the readers and writers of published layouts share: bytes of strangers, taken with care.
  */
-#ifndef LQ_TABLES_PUBLISHED_H
-#define LQ_TABLES_PUBLISHED_H
+#ifndef LACQUER_TABLES_PUBLISHED_H
+#define LACQUER_TABLES_PUBLISHED_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* raw.h - the bare numbers of foreign files: .npy, EXR, C arrays. */
-#ifndef LQ_TABLES_RAW_H
-#define LQ_TABLES_RAW_H
+#ifndef LACQUER_TABLES_RAW_H
+#define LACQUER_TABLES_RAW_H
 
 #include "lacquer.h"
 

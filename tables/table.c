@@ -94,9 +94,9 @@ lq_status lq_table_create(lq_table **table, const lq_axis *axes, int axis_count,
                           const char *const *channel_names, int channel_count, lq_error *error) {
     *table = NULL;
     lq_status status = check_counts(axis_count, channel_count, error);
-    if (!status) status = check_axes(axes, axis_count, error);
-    if (!status) status = check_channels(channel_names, channel_count, error);
-    if (!status) status = check_entries(axes, axis_count, channel_count, error);
+    if (status == LQ_OK) status = check_axes(axes, axis_count, error);
+    if (status == LQ_OK) status = check_channels(channel_names, channel_count, error);
+    if (status == LQ_OK) status = check_entries(axes, axis_count, channel_count, error);
     if (status) return status;
     lq_table *made = calloc(1, sizeof *made);
     if (!made) return lq_fail(error, LQ_NO_MEMORY, "no memory for a table");

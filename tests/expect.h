@@ -3,7 +3,8 @@
 #ifndef LACQUER_TESTS_EXPECT_H
 #define LACQUER_TESTS_EXPECT_H
 
-/* clang-format off: cmocka.h wants these before it */
+/* cmocka.h wants these before it */
+/* clang-format off */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

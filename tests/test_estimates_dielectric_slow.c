@@ -40,7 +40,7 @@ static void estimates_cover(const char *id, int points, unsigned long long first
     const lq_kind *kind = lq_kind_find(id, &error);
     int lies = 0, misses = 0, judged = 0, coarse = 0;
     double worst = 0.0, ratio = 0.0;
-#pragma omp parallel for schedule(dynamic, 2) reduction(+ : lies, misses, judged, coarse)                        \
+#pragma omp parallel for schedule(dynamic, 2) reduction(+ : lies, misses, judged, coarse)                    \
     reduction(max : worst, ratio)
     for (int i = 0; i < points; i++) {
         double point[4];

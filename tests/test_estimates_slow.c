@@ -1,5 +1,6 @@
 /* The error estimate covers the truth: 500 random points, or LACQUER_POINTS=2000 in some minutes, a third of
- * them grazing, a third nearly smooth, indices from nearly matched to metals, some on the real axis below 1. */
+ * them grazing, a third nearly smooth, indices from nearly matched to metals, some on the real axis below 1.
+ */
 #include "tests/expect.h"
 
 #include "lacquer.h"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Which room may include which. Fails on an include outside this table, on one that is not relative to
-# the root, and on a library file that includes a verb.
+# Which room may include which. Fails on an include outside this table and on one that is not relative to
+# the root.
 set -euo pipefail
 cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
 
@@ -12,7 +12,7 @@ declare -A may=(
     [fit]="microfacet tables"
     [pack]="microfacet tables precompute pca fit"
     [validate]="microfacet tables precompute pca fit pack"
-    [cli]=""
+    [program]="microfacet tables precompute pca fit pack validate"
 )
 failed=0
 
@@ -22,21 +22,15 @@ complain() { # FILE:LINE INCLUDE WHY
 }
 
 allowed_rooms() { # FILE ROOM
-    local name=${1##*/}
     printf '%s' "lacquer.h $2 ${may[$2]}"
-    case $name in verb_*) printf ' cli' ;; esac
     # an NDF that is opened may fail, with a message
     case $1 in microfacet/ndf*.c | microfacet/profile.c | microfacet/gtr.c | microfacet/student_t.c)
         printf ' tables' ;; esac
-    # the verb fills pca's callback for exact values
-    case $1 in pca/verb_*) printf ' precompute' ;; esac
-    # charts and random bounces
-    case $1 in fit/verb_*) printf ' validate' ;; esac
 }
 
 check() { # FILE LINE INCLUDED
     local file=$1 where=$1:$2 included=$3
-    local room=${file%%/*} target=${3%%/*} name=${file##*/}
+    local room=${file%%/*} target=${3%%/*}
     case $included in
     ../* | */../* | ./*) complain "$where" "$included" "is not relative to the root" ;;
     esac
@@ -44,10 +38,6 @@ check() { # FILE LINE INCLUDED
     case " $(allowed_rooms "$file" "$room") " in
     *" $target "*) ;;
     *) complain "$where" "$included" "$room/ may not include it" ;;
-    esac
-    case $included:$name in
-    */verb_*:verb_*) ;;
-    */verb_*) complain "$where" "$included" "only verbs include a verb's header" ;;
     esac
     case $file:$included in
     validate/walk*:precompute/*) complain "$where" "$included" "the random walk is independent of it" ;;

@@ -1,5 +1,5 @@
-/* DDS files of every shape, read by OpenSceneGraph (sizes, format, every texel) and by nvddsinfo of NVIDIA's texture
- * tools (header, arrays). Skipped where neither is there. */
+/* DDS files of every shape, read by OpenSceneGraph (sizes, format, every texel) and by nvddsinfo of NVIDIA's
+ * texture tools (header, arrays). Skipped where neither is there. */
 #include "tests/expect.h"
 #include "tests/scratch.h"
 
@@ -60,7 +60,8 @@ static size_t decode(const char *text, unsigned char *bytes) {
 /* The value of a half: the sign, and a magnitude of 11 bits. */
 static float half_value(const unsigned char *bytes) {
     const int bits = bytes[0] | bytes[1] << 8, exponent = bits >> 10 & 31, mantissa = bits & 1023;
-    const float magnitude = exponent ? ldexpf((float)(1024 + mantissa), exponent - 25) : ldexpf((float)mantissa, -24);
+    const float magnitude =
+        exponent ? ldexpf((float)(1024 + mantissa), exponent - 25) : ldexpf((float)mantissa, -24);
     return bits & 0x8000 ? -magnitude : magnitude;
 }
 
@@ -101,8 +102,10 @@ static void expect_line(const char *text, const char *line) {
 }
 
 static void read_header(const lq_image *image) {
-    static const char *const half[] = {"", "54 (R16_FLOAT)", "34 (R16G16_FLOAT)", "", "10 (R16G16B16A16_FLOAT)"};
-    static const char *const single[] = {"", "41 (R32_FLOAT)", "16 (R32G32_FLOAT)", "", "2 (R32G32B32A32_FLOAT)"};
+    static const char *const half[] = {"", "54 (R16_FLOAT)", "34 (R16G16_FLOAT)", "",
+                                       "10 (R16G16B16A16_FLOAT)"};
+    static const char *const single[] = {"", "41 (R32_FLOAT)", "16 (R32G32_FLOAT)", "",
+                                         "2 (R32G32B32A32_FLOAT)"};
     static char text[OUTPUT];
     char line[80];
     run("nvddsinfo t.dds 2>&1", text);
@@ -112,7 +115,8 @@ static void read_header(const lq_image *image) {
     expect_line(text, line);
     snprintf(line, sizeof line, "Depth: %zu\n", image->depth > 1 ? image->depth : 0);
     expect_line(text, line);
-    snprintf(line, sizeof line, "Pitch: %zu\n", image->width * (size_t)image->channels * (image->single ? 4 : 2));
+    snprintf(line, sizeof line, "Pitch: %zu\n",
+             image->width * (size_t)image->channels * (image->single ? 4 : 2));
     expect_line(text, line);
     snprintf(line, sizeof line, "DXGI Format: %s\n", (image->single ? single : half)[image->channels]);
     expect_line(text, line);

@@ -31,8 +31,8 @@ static double largest_departure(const lq_table *table, double (*exact)(const lq_
     assert_int_equal(lq_ndf_open(&ndf, "ggx", &error), LQ_OK);
     assert_int_equal(lq_curve_make(&curve, ndf, &error), LQ_OK);
     for (size_t i = 0; i < table->axes[0].size; i++)
-        worst = fmax(worst,
-                     fabs((double)table->channels[0][i] / exact(&curve, table->axes[0].nodes[i]) - 1.0));
+        worst =
+            fmax(worst, fabs((double)table->channels[0][i] / exact(&curve, table->axes[0].nodes[i]) - 1.0));
     lq_ndf_close(ndf);
     return worst;
 }

@@ -58,9 +58,9 @@ static lq_status make_table(lq_table **table, lq_error *error) {
     lq_status status = lq_axis_parse(&axes[0], "mu", "0:1:4:sqrt", error);
     if (status) return status;
     status = lq_axis_parse(&axes[1], "alpha", "0,0.5,1", error);
-    if (!status) status = lq_table_create(table, axes, 2, channels, 2, error);
-    if (!status) status = lq_table_set_fact(*table, "ndf", "ggx", error);
-    if (!status) status = lq_table_set_fact(*table, "ndf", "beckmann", error);
+    if (status == LQ_OK) status = lq_table_create(table, axes, 2, channels, 2, error);
+    if (status == LQ_OK) status = lq_table_set_fact(*table, "ndf", "ggx", error);
+    if (status == LQ_OK) status = lq_table_set_fact(*table, "ndf", "beckmann", error);
     lq_axis_free(&axes[0]);
     lq_axis_free(&axes[1]);
     return status;
@@ -69,10 +69,10 @@ static lq_status make_table(lq_table **table, lq_error *error) {
 static lq_status live(const char *path, lq_error *error) {
     lq_table *table, *back = NULL;
     lq_status status = make_table(&table, error);
-    if (!status) status = lq_table_write_npy(table, path, error);
-    if (!status) status = lq_table_write_exr(table, path, error);
-    if (!status) status = lq_table_read_exr(&back, path, error);
-    if (!status) assert_memory_equal(table->channels[1], back->channels[1], 12 * sizeof(float));
+    if (status == LQ_OK) status = lq_table_write_npy(table, path, error);
+    if (status == LQ_OK) status = lq_table_write_exr(table, path, error);
+    if (status == LQ_OK) status = lq_table_read_exr(&back, path, error);
+    if (status == LQ_OK) assert_memory_equal(table->channels[1], back->channels[1], 12 * sizeof(float));
     lq_table_free(table);
     lq_table_free(back);
     return status;

@@ -1,8 +1,8 @@
 /* What a comparison says: the metrics of known errors, scores of known noise, false alarms as rare as stated;
  * the points that are drawn; the origin that a table's facts tell. */
+#include "tables/origin.h"
 #include "validate/compare.h"
 #include "validate/draw.h"
-#include "tables/origin.h"
 #include "validate/stream.h"
 #include "validate/walk_kind.h"
 

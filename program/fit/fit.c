@@ -1,0 +1,241 @@
+/* fit.c - `lacquer fit`: the mappings of B18 refitted, with their errors. */
+#include "program/fit/bounces.h"
+
+#include "program/message.h"
+#include "program/options.h"
+#include "program/output.h"
+#include "program/settings.h"
+#include "program/verb.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLES = 256, FAMILY, RANGE, POINTS, NORM, LOSS, REPORT, TEXTURE, SNIPPET };
+
+static const cli_option options[] = {
+    {'o', "output", "FILE.json", "coefficients, covariance, errors, the paper's fit on the same points"},
+    {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)"},
+    {FAMILY, "family", "F", "parametric form, below (default: the last of its mapping)"},
+    {RANGE, "range", "A:B",
+     "of alpha, or g (default 0.01:0.8, or 0.9 of f's pole; hg 0.05:0.99; transmission 0.02:0.4)"},
+    {POINTS, "points", "N", "points over the range (default 256)"},
+    {NORM, "norm", "max|rms", "what is made small: the largest relative error or the rms (default max)"},
+    {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)"},
+    {REPORT, "report", "FILE.svg", "charts: curve and fits; FILE-residuals.svg"},
+    {TEXTURE, "texture", "FILE", "variance: log2 f over alpha, .exr or .npy; FILE-inverse"},
+    {SAMPLES, "samples", "N", "bounces, anisotropic: rays a row (default 200000)"},
+    {SNIPPET, "snippet", "FILE", "the function and its inverse: .glsl, .hlsl or .h"},
+    {0},
+};
+
+static void print_notes(FILE *out) {
+    fprintf(
+        out,
+        "MAPPING is\n"
+        "  variance      f(alpha), in which bounces add: f(phi) = 2 f, f ~ v1 at 0 (B18 sec. 4.1)\n"
+        "  hg            sigma_g = f(v1^-1(v_HG(g))), a Henyey-Greenstein lobe as f (B18 eq. 21)\n"
+        "  transmission  alpha_t, whose reflected lobe is as wide as the transmitted one (B18 eq. 10)\n"
+        "  tail          kurtosis E[sin^4] / E[sin^2]^2 of the lobe of v1: 6/5 is the uniform hemisphere,\n"
+        "                2 a Gaussian\n"
+        "or a table:\n"
+        "  bounces       variance of 2, 4, 8 bounces, simulated: exact f, its fit, B18's f\n"
+        "  anisotropic   two bounces of anisotropic GGX, frames turned: f per axis (Y19), simulated\n"
+        "  transmitted   variance of the transmitted lobe over eta, mu, alpha; B18 eq. 10, eq. "
+        "13\n\nFamilies\n");
+    for (int i = 0; i < LQ_FAMILIES; i++) {
+        const lq_family *family = lq_family_at(i);
+        fprintf(out, "  %-12s %-11s %s\n", lq_mapping_name(family->mapping), family->name, family->formula);
+    }
+    fprintf(out, "\nThe fit itself is done by lacquer-fit, a program of its own that needs Ceres.\n");
+}
+
+static int run(int argc, char **argv);
+
+const cli_verb cli_verb_fit = {
+    .name = "fit",
+    .summary = "fit the mappings of roughness, phase function and transmission",
+    .usage = "MAPPING -o FILE.json [options]\nbounces|anisotropic [--samples N] [-o FILE.json]\ntransmitted "
+             "[-o FILE.json]",
+    .options = options,
+    .notes = print_notes,
+    .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance.svg\n"
+                "lacquer fit variance --ndf gtr:gamma=3 --texture f.exr -o gtr.json\n"
+                "lacquer fit hg --family b18 -o hg.json\n"
+                "lacquer fit transmission -o transmission.json\n"
+                "lacquer fit bounces --samples 1000000",
+    .run = run,
+};
+
+static bool take_mapping(fit_request *request, const char *text) {
+    const char *names[LQ_MAPPINGS + 3] = {[LQ_MAPPINGS] = "bounces", "anisotropic", "transmitted"};
+    for (int i = 0; i < LQ_MAPPINGS; i++) names[i] = lq_mapping_name((lq_mapping)i);
+    if (request->has_mapping) {
+        cli_message("unexpected '%s'; fit takes one MAPPING", text);
+        return false;
+    }
+    const int choice = cli_parse_choice("MAPPING", text, names, LQ_MAPPINGS + 3);
+    request->table = choice < LQ_MAPPINGS ? FIT_NO_TABLE : (fit_table)(FIT_BOUNCES + choice - LQ_MAPPINGS);
+    request->mapping = request->table == FIT_NO_TABLE ? (lq_mapping)choice : LQ_MAP_VARIANCE;
+    return request->has_mapping = choice >= 0;
+}
+
+static bool take_range(fit_request *request, const char *text) {
+    char low[32] = "";
+    const char *colon = strchr(text, ':');
+    if (colon && (size_t)(colon - text) < sizeof low) memcpy(low, text, (size_t)(colon - text));
+    if (colon && cli_number(low, &request->low) && cli_number(colon + 1, &request->high) &&
+        request->low >= 1e-4 && request->high < 1.0 && request->low < request->high)
+        return true;
+    cli_message("--range: '%s' is not A:B with 0.0001 <= A < B < 1", text);
+    return false;
+}
+
+static bool take(fit_request *request, int id, const char *value) {
+    static const char *const norms[] = {"max", "rms"};
+    int choice;
+    switch (id) {
+    case 'o':
+        return (request->output = value) != NULL;
+    case CLI_NDF:
+        return (request->ndf_text = value) != NULL;
+    case FAMILY:
+        return (request->family_name = value) != NULL;
+    case RANGE:
+        return take_range(request, value);
+    case POINTS:
+        return cli_parse_count("--points", value, 8, 2000, &request->points);
+    case NORM:
+        choice = cli_parse_choice("--norm", value, norms, 2);
+        request->smallest_rms = choice == 1;
+        return choice >= 0;
+    case SAMPLES:
+        return cli_parse_count("--samples", value, 1000, 1000000000, &request->samples);
+    case LOSS:
+        return cli_parse_number("--loss", value, 1e-6, 1e3, &request->loss);
+    case REPORT:
+        return (request->report = value) != NULL;
+    case TEXTURE:
+        return (request->texture = value) != NULL;
+    case SNIPPET:
+        return (request->snippet = value) != NULL;
+    default:
+        return take_mapping(request, value);
+    }
+}
+
+static bool find_family(fit_request *request) {
+    request->family = lq_family_find(request->mapping, request->family_name);
+    if (request->family >= 0) return true;
+    char list[LQ_MESSAGE_SIZE] = "";
+    for (int i = 0; i < LQ_FAMILIES; i++)
+        if (lq_family_at(i)->mapping == request->mapping) cli_join(list, sizeof list, lq_family_at(i)->name);
+    cli_message("--family: '%s' is not one of: %s", request->family_name, list);
+    return false;
+}
+
+static bool parse(fit_request *request, int argc, char **argv) {
+    static const double ranges[LQ_MAPPINGS][2] = {{0.01, 0.8}, {0.05, 0.99}, {0.02, 0.4}, {0.01, 0.8}};
+    *request = (fit_request){.ndf_text = "ggx", .points = 256};
+    cli_args args = cli_args_begin(&cli_verb_fit, argc, argv);
+    for (int id; (id = cli_args_next(&args)) != CLI_END;)
+        if (id == CLI_BAD || !take(request, id, args.value)) return false;
+    if (!request->has_mapping) cli_message("MAPPING is missing; see `lacquer fit --help`");
+    else if (request->table != FIT_NO_TABLE && (request->report || request->texture || request->snippet))
+        cli_message("bounces, anisotropic and transmitted take no --report, --texture or --snippet");
+    else if ((request->table == FIT_NO_TABLE || request->table == FIT_TRANSMITTED) && request->samples)
+        cli_message("--samples is for bounces and anisotropic");
+    else if (request->table == FIT_ANISOTROPIC && strcmp(request->ndf_text, "ggx") != 0)
+        cli_message("anisotropic knows no NDF but ggx");
+    else if (request->table == FIT_NO_TABLE && !request->output) cli_message("-o FILE.json is missing");
+    else if (request->texture && request->mapping != LQ_MAP_VARIANCE)
+        cli_message("--texture is for the mapping variance");
+    else if (request->loss > 0.0 && !request->smallest_rms) cli_message("--loss needs --norm rms");
+    else {
+        request->pole_ends_range = request->high == 0.0;
+        if (request->pole_ends_range) {
+            request->low = ranges[request->mapping][0];
+            request->high = ranges[request->mapping][1];
+        }
+        const char *const files[] = {request->output, request->report, request->texture, request->snippet};
+        for (int i = 0; i < 4; i++)
+            if (files[i] && !cli_output_check(files[i])) return false;
+        return find_family(request);
+    }
+    return false;
+}
+
+/* The paper's own constants; the scale of f cancels, so it is set to agree at alpha = 0.237, where B18's
+ * does. */
+static void compare(fit_job *job) {
+    job->errors = fit_errors_of(job, job->request.family, job->answer.p);
+    job->published = lq_family_find(job->request.mapping, "b18");
+    if (job->published < 0) return;
+    const lq_family *paper = lq_family_at(job->published);
+    memcpy(job->published_p, paper->published, (size_t)paper->parameters * sizeof(double));
+    if (job->request.mapping == LQ_MAP_VARIANCE || job->request.mapping == LQ_MAP_HG)
+        job->published_p[0] = lq_curve_f(&job->curve, 0.237) * (pow(0.237, -1.1) - 1.0);
+    job->published_errors = fit_errors_of(job, job->published, job->published_p);
+}
+
+static void print(const fit_job *job) {
+    const lq_family *family = lq_family_at(job->request.family);
+    printf("%s of %s, family %s\n  %s\n ", lq_mapping_name(job->request.mapping), lq_ndf_text(job->ndf),
+           family->name, family->formula);
+    for (int k = 0; k < family->parameters; k++) printf(" %c = %.6g", family->names[k], job->answer.p[k]);
+    printf("\n  relative error on [%g, %g], %zu points: rms %.3g, max %.3g at %.3g\n", job->request.low,
+           job->request.high, job->count, job->errors.rms, job->errors.max, job->errors.max_at);
+    if (job->published >= 0)
+        printf("  %s: rms %.3g, max %.3g at %.3g\n", lq_family_at(job->published)->source,
+               job->published_errors.rms, job->published_errors.max, job->published_errors.max_at);
+}
+
+static bool tabulate(const fit_job *job) {
+    const fit_request *request = &job->request;
+    const size_t samples = request->samples ? request->samples : 200000;
+    static const char *const names[] = {"", "bounces", "anisotropic", "transmitted"};
+    json_t *rows = request->table == FIT_BOUNCES       ? fit_bounces(job, samples)
+                   : request->table == FIT_ANISOTROPIC ? fit_anisotropic(job, samples)
+                                                       : fit_transmitted(job);
+    if (!rows) return false;
+    if (request->output)
+        return fit_write_rows(job, names[request->table], request->table == FIT_TRANSMITTED ? 0 : samples,
+                              rows);
+    json_decref(rows);
+    return true;
+}
+
+static bool work(fit_job *job) {
+    const fit_request *request = &job->request;
+    if (request->table == FIT_TRANSMITTED) return tabulate(job);
+    if (!fit_measure(job)) return false;
+    if (request->table == FIT_ANISOTROPIC) return tabulate(job);
+    const lq_fit_problem problem = {request->family, job->count,    job->x,
+                                    job->y,          request->loss, request->smallest_rms ? 0 : 40};
+    if (!fit_run_engine(&problem, &job->answer)) return false;
+    compare(job);
+    if (request->table == FIT_BOUNCES) return tabulate(job);
+    if (request->report && !fit_write_report(job)) return false;
+    if (request->texture && !fit_write_texture(job)) return false;
+    if (request->snippet && !fit_write_snippet(job)) return false;
+    if (!fit_write_json(job)) return false;
+    print(job);
+    return true;
+}
+
+static int run(int argc, char **argv) {
+    fit_job *job = calloc(1, sizeof *job);
+    if (!job) return cli_fail("no memory");
+    bool done = false;
+    if (parse(&job->request, argc, argv)) {
+        lq_error error = {""};
+        const lq_status status = lq_ndf_open(&job->ndf, job->request.ndf_text, &error);
+        if (status == LQ_OK) done = work(job);
+        else cli_fail_status(status, &error);
+    }
+    lq_ndf_close(job->ndf);
+    free(job->x);
+    free(job->y);
+    free(job);
+    return done ? CLI_DONE : CLI_FAILED;
+}

@@ -1,0 +1,184 @@
+/* info.c - `lacquer info`: what a stored table holds and how it was made. */
+#include "lacquer.h"
+#include "program/message.h"
+#include "program/options.h"
+#include "program/verb.h"
+
+#include <jansson.h>
+#include <math.h>
+
+typedef struct channel_range {
+    double min, max, mean;
+    size_t bad; /* NaN or infinite entries, not counted in the others */
+} channel_range;
+
+static channel_range measure(const lq_table *table, int channel) {
+    channel_range range = {INFINITY, -INFINITY, 0, 0};
+    size_t entries = lq_table_entries(table);
+    for (size_t i = 0; i < entries; i++) {
+        double value = (double)table->channels[channel][i];
+        if (!isfinite(value)) {
+            range.bad++;
+            continue;
+        }
+        range.min = fmin(range.min, value);
+        range.max = fmax(range.max, value);
+        range.mean += value;
+    }
+    range.mean /= (double)(entries - range.bad); /* NaN where nothing is finite */
+    return range;
+}
+
+/* ======================================================================================
+ *                                         Text
+ * ====================================================================================== */
+
+static void print_axis(const lq_axis *axis) {
+    char map[64];
+    snprintf(map, sizeof map, "%s", lq_map_name(axis->map));
+    if (axis->map == LQ_MAP_POWER) snprintf(map, sizeof map, "%s %g", lq_map_name(axis->map), axis->exponent);
+    printf("  %-10s %5zu nodes, %g to %g, %s\n", axis->name, axis->size, axis->min, axis->max, map);
+}
+
+static void print_channel(const lq_table *table, int channel) {
+    channel_range range = measure(table, channel);
+    printf("  %-10s min %.9g, max %.9g, mean %.9g", table->channel_names[channel], range.min, range.max,
+           range.mean);
+    if (range.bad > 0) printf(", %zu not finite", range.bad);
+    printf("\n");
+}
+
+static void print_text(const char *path, const lq_table *table) {
+    printf("%s: %zu entries\n", path, lq_table_entries(table));
+    printf("axes (the first one fastest)\n");
+    for (int i = 0; i < table->axis_count; i++) print_axis(&table->axes[i]);
+    printf("channels\n");
+    for (int i = 0; i < table->channel_count; i++) print_channel(table, i);
+    printf("facts\n");
+    for (size_t i = 0; i < table->fact_count; i++)
+        printf("  %-10s %s\n", table->facts[i].key, table->facts[i].value);
+}
+
+/* ======================================================================================
+ *                                         JSON
+ * ====================================================================================== */
+
+static json_t *axis_json(const lq_axis *axis) {
+    json_t *nodes = json_array();
+    for (size_t i = 0; i < axis->size; i++) json_array_append_new(nodes, json_real(axis->nodes[i]));
+    return json_pack("{s:s, s:I, s:f, s:f, s:s, s:f, s:o}", "name", axis->name, "size",
+                     (json_int_t)axis->size, "min", axis->min, "max", axis->max, "map",
+                     lq_map_name(axis->map), "exponent", axis->exponent, "nodes", nodes);
+}
+
+/* JSON has no NaN: a channel without one finite entry has null figures. */
+static json_t *real_or_null(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *channel_json(const lq_table *table, int channel) {
+    channel_range range = measure(table, channel);
+    return json_pack("{s:s, s:o, s:o, s:o, s:I}", "name", table->channel_names[channel], "min",
+                     real_or_null(range.min), "max", real_or_null(range.max), "mean",
+                     real_or_null(range.mean), "not_finite", (json_int_t)range.bad);
+}
+
+static int print_json(const char *path, const lq_table *table) {
+    json_t *axes = json_array(), *channels = json_array(), *facts = json_object();
+    for (int i = 0; i < table->axis_count; i++) json_array_append_new(axes, axis_json(&table->axes[i]));
+    for (int i = 0; i < table->channel_count; i++) json_array_append_new(channels, channel_json(table, i));
+    for (size_t i = 0; i < table->fact_count; i++)
+        json_object_set_new(facts, table->facts[i].key, json_string(table->facts[i].value));
+    json_t *root =
+        json_pack("{s:s, s:I, s:o, s:o, s:o}", "file", path, "entries", (json_int_t)lq_table_entries(table),
+                  "axes", axes, "channels", channels, "facts", facts);
+    if (!root) return cli_fail("%s: its names are not valid UTF-8, which JSON needs", path);
+    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
+    printf("\n");
+    json_decref(root);
+    return CLI_DONE;
+}
+
+/* ======================================================================================
+ *                                         Verb
+ * ====================================================================================== */
+
+enum { OPTION_FORMAT = 256, OPTION_LAYOUT, OPTION_KIND, OPTION_NDF };
+
+typedef struct info_request {
+    const char *path, *kind, *ndf;
+    int format, layout; /* layout -1: a file of this program */
+} info_request;
+
+static const cli_option options[] = {
+    {OPTION_FORMAT, "format", "text|json", "how to print (default text)"},
+    {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table"},
+    {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
+    {OPTION_NDF, "ndf", "NDF", "which NDF it was made for, where it is not the one of the layout"},
+    {0},
+};
+
+static bool take_option(info_request *request, int id, const char *value) {
+    static const char *const formats[] = {"text", "json"};
+    const char *layouts[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
+    if (id == OPTION_FORMAT) return (request->format = cli_parse_choice("--format", value, formats, 2)) >= 0;
+    if (id == OPTION_LAYOUT)
+        return (request->layout = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS)) >= 0;
+    if (id == OPTION_KIND) {
+        request->kind = value;
+        return true;
+    }
+    if (id == OPTION_NDF) {
+        request->ndf = value;
+        return true;
+    }
+    if (request->path) cli_message("unexpected '%s'; info takes one FILE", value);
+    else request->path = value;
+    return request->path == value;
+}
+
+static bool read_arguments(info_request *request, int argc, char **argv) {
+    cli_args args = cli_args_begin(&cli_verb_info, argc, argv);
+    for (int id; (id = cli_args_next(&args)) != CLI_END;)
+        if (id == CLI_BAD || !take_option(request, id, args.value)) return false;
+    if (!request->path) cli_message("no file; usage: lacquer info %s", cli_verb_info.usage);
+    else if (request->layout >= 0 && !request->kind)
+        cli_message("--layout needs --kind: a published file does not say which table it holds");
+    else if (request->layout < 0 && request->kind) cli_message("--kind needs --layout");
+    else if (request->layout < 0 && request->ndf)
+        cli_message("--ndf needs --layout: other files say themselves which they are of");
+    else return true;
+    return false;
+}
+
+static int run(int argc, char **argv) {
+    info_request request = {.layout = -1};
+    if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
+    lq_table *table = NULL;
+    lq_error error = {""};
+    lq_status status = request.layout < 0 ? lq_table_read_exr(&table, request.path, &error)
+                                          : lq_published_read(&table, request.path, (lq_layout)request.layout,
+                                                              request.kind, &error);
+    if (status == LQ_OK && request.ndf) status = lq_table_set_fact(table, "ndf", request.ndf, &error);
+    if (status != LQ_OK) {
+        lq_table_free(table);
+        return cli_fail_status(status, &error);
+    }
+    int code = CLI_DONE;
+    if (request.format == 1) code = print_json(request.path, table);
+    else print_text(request.path, table);
+    lq_table_free(table);
+    return code;
+}
+
+const cli_verb cli_verb_info = {
+    .name = "info",
+    .summary = "axes, channels and provenance of a stored table",
+    .usage = "FILE [--format text|json] [--layout LAYOUT --kind TABLE]",
+    .options = options,
+    .examples = "lacquer info fgd.exr\n"
+                "lacquer info --format json fgd.exr\n"
+                "lacquer info TIR.bin --layout belcour --kind tir-pass",
+    .run = run,
+};

@@ -1,0 +1,50 @@
+/* output.c - finds out before the work whether its result can be written. */
+#include "program/output.h"
+
+#include "program/message.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *cli_basename(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Whether a new file can be made in `folder`. Trying is the only test that also holds for root,
+ * read-only mounts and folders of /proc. */
+static bool takes_files(const char *folder) {
+    char probe[PATH_MAX];
+    snprintf(probe, sizeof probe, "%s/.lacquer-XXXXXX", folder);
+    int file = mkstemp(probe);
+    if (file < 0) return false;
+    close(file);
+    unlink(probe);
+    return true;
+}
+
+static bool refuse(const char *path, const char *why) {
+    cli_message("cannot write %s: %s", path, why);
+    return false;
+}
+
+bool cli_output_check(const char *path) {
+    char folder[PATH_MAX - 32] = ".";
+    size_t length = (size_t)(cli_basename(path) - path);
+    struct stat there;
+    if (stat(path, &there) == 0 && S_ISDIR(there.st_mode)) return refuse(path, "it is a folder, not a file");
+    if (path[length] == '\0') return refuse(path, "that is not the name of a file");
+    if (stat(path, &there) == 0 && access(path, W_OK) != 0) return refuse(path, strerror(errno));
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+        return true; /* a device or pipe is written as it is */
+    if (strlen(path) >= sizeof folder) return refuse(path, strerror(ENAMETOOLONG));
+    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    if (takes_files(folder)) return true;
+    cli_message("cannot write %s: folder %s: %s", path, folder, strerror(errno));
+    return false;
+}

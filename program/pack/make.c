@@ -1,0 +1,174 @@
+/* make.c - the tables of a pack: computed or found in the cache, factored, measured. */
+#include "pack/cache.h"
+#include "pack/mapping.h"
+#include "pca/factors.h"
+#include "pca/measure.h"
+#include "program/pack/pack.h"
+#include "program/progress.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ------------------------------------------------------------------------- tables and their checks */
+
+/* All that determines a table: the program, the kind, the settings and every node. NULL: out of memory. */
+static char *write_key(const pack_request *r, const lq_recipe_table *t, const char *what) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    fprintf(out, "%s %s %s ndf=%s tolerance=%.17g scattering=%d masking=%d", r->build, what, t->kind->id,
+            t->settings.ndf, t->settings.tolerance, (int)t->settings.scattering, (int)t->settings.masking);
+    for (int a = 0; a < t->kind->axis_count; a++) {
+        fprintf(out, " %s=", t->axes[a].name);
+        for (size_t i = 0; i < t->axes[a].size; i++) fprintf(out, "%.17g,", t->axes[a].nodes[i]);
+    }
+    if (fclose(out) == 0) return text;
+    free(text);
+    return NULL;
+}
+
+/* One thing to obtain: a table (points 0), or exact values to measure or to search against. */
+typedef struct want {
+    const char *what; /* "check", in the label of the progress bar; NULL: the table */
+    size_t points, seed;
+} want;
+
+/* Whether it is measured where solves are shared: of factors, whose points should be many, and of
+ * dielectrics, whose solves are slow. */
+static bool on_grid(const lq_recipe_table *t) {
+    return t->factored || (t->kind->interface && strcmp(t->kind->interface, "dielectric") == 0);
+}
+
+static lq_status compute(const lq_recipe_table *t, const want *w, const lq_settings *settings,
+                         lq_table **table, lq_error *error) {
+    cli_progress bar;
+    char label[64];
+    snprintf(label, sizeof label, w->what ? "%s, %s" : "%s", t->name, w->what);
+    cli_progress_begin(&bar, label);
+    const bool mapping = lq_is_mapping(t->kind);
+    lq_status status =
+        mapping && !w->points ? lq_mapping_table(t->kind, settings, t->axes, table, error)
+        : mapping             ? lq_mapping_exact(t->kind, settings, t->axes, w->points, table, error)
+        : !w->points          ? lq_precompute(t->kind, settings, t->axes, &bar.progress, table, error)
+        : on_grid(t) ? lq_measure_exact_grid(t->kind, settings, t->axes, w->points, w->seed, &bar.progress,
+                                             table, error)
+                     : lq_measure_exact(t->kind, settings, t->axes, w->points, &bar.progress, table, error);
+    cli_progress_end(&bar);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
+}
+
+/* From the cache, or computed and put there. */
+static lq_status obtain(const pack_request *r, const lq_recipe_table *t, const want *w, lq_table **table,
+                        lq_error *error) {
+    char what[64];
+    if (!w->points) snprintf(what, sizeof what, "table");
+    else if (on_grid(t)) snprintf(what, sizeof what, "grid-%zu-%zu", w->points, w->seed);
+    else snprintf(what, sizeof what, "points-%zu", w->points);
+    char *key = write_key(r, t, what);
+    if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
+    lq_settings settings = t->settings;
+    settings.threads = (int)r->threads;
+    lq_status status = LQ_OK;
+    *table = lq_cache_find(r->cache, key);
+    if (!*table) {
+        status = compute(t, w, &settings, table, error);
+        if (status == LQ_OK) status = lq_cache_store(r->cache, key, *table, error);
+    }
+    free(key);
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------- factors */
+
+enum { CHECK_SEED = 2, SEARCH_SEED = 1 };
+
+/* A search aims below its budget: the check, at other points, finds larger errors. */
+static const double MARGIN = 0.75;
+
+/* What a search measures against: other points than the check. `user` is a table of them over all axes. */
+static lq_status search_values(void *user, const double *min, const double *max, lq_table **values,
+                               lq_error *error) {
+    return lq_nodes_within(user, min, max, values, error);
+}
+
+static lq_status factor(const pack_request *r, lq_packed *packed, lq_error *error) {
+    const lq_recipe_table *t = packed->from;
+    const bool searches = t->pca_budget > 0.0 || t->pca_bytes > 0;
+    const want search = {"search", t->points, SEARCH_SEED};
+    lq_pca_goal goal = {sizeof goal, t->pca_norm, MARGIN * t->pca_budget, t->pca_bytes, search_values, NULL};
+    lq_table *exact = NULL;
+    lq_pca_try *tries = NULL;
+    size_t count = 0;
+    cli_progress bar;
+    char label[64];
+    lq_status status = searches ? obtain(r, t, &search, &exact, error) : LQ_OK;
+    if (status != LQ_OK) return status;
+    goal.user = exact;
+    snprintf(label, sizeof label, "%s, pca", t->name);
+    cli_progress_begin(&bar, label);
+    status = searches ? lq_pca_search(packed->table, t->channel, &t->pca, &goal, &bar.progress,
+                                      &packed->factored, &tries, &count, error)
+                      : lq_pca(packed->table, t->channel, &t->pca, &bar.progress, &packed->factored, error);
+    cli_progress_end(&bar);
+    free(tries);
+    lq_table_free(exact);
+    if (status == LQ_NOT_CONVERGED) status = LQ_OK; /* the measured error says so */
+    return status == LQ_OK ? lq_factored_set_fact(packed->factored, "pca", t->pca_text, error) : status;
+}
+
+/* The factors, and the table where they or a binary need it. */
+static lq_status obtain_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
+    const lq_recipe_table *t = packed->from;
+    const want whole = {0};
+    char what[LQ_PCA_TEXT + 64];
+    bool binary = false;
+    lq_status status = LQ_OK;
+    snprintf(what, sizeof what, "factors-%zu %s", t->points, t->pca_text);
+    char *key = write_key(r, t, what);
+    if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
+    for (int l = 0; l < LQ_LAYOUTS; l++) binary = binary || t->layouts[l];
+    packed->factored = lq_cache_find_factored(r->cache, key);
+    if (!packed->factored || binary) status = obtain(r, t, &whole, &packed->table, error);
+    if (status == LQ_OK && !packed->factored) {
+        status = factor(r, packed, error);
+        if (status == LQ_OK) status = lq_cache_store_factored(r->cache, key, packed->factored, error);
+    }
+    free(key);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------ a table */
+
+static lq_status make_texture(const pack_request *r, lq_packed *packed, lq_error *error) {
+    const lq_recipe_table *t = packed->from;
+    const want whole = {0}, check = {"check", t->points, CHECK_SEED};
+    lq_table *exact = NULL;
+    lq_status status = obtain(r, t, &whole, &packed->table, error);
+    if (status == LQ_OK) status = lq_texture_make(&packed->texture, packed->table, t->name, error);
+    if (status == LQ_OK) status = obtain(r, t, &check, &exact, error);
+    if (status == LQ_OK)
+        status = lq_measure_texture(&packed->texture, t->axes, t->kind->axis_count, exact,
+                                    lq_is_mapping(t->kind), &packed->measure, error);
+    lq_table_free(exact);
+    return status;
+}
+
+static lq_status make_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
+    const lq_recipe_table *t = packed->from;
+    const want check = {"check", t->points, CHECK_SEED};
+    lq_table *exact = NULL;
+    lq_status status = obtain_factors(r, packed, error);
+    if (status == LQ_OK) status = lq_factored_layout(&packed->factors, packed->factored, t->name, error);
+    if (status == LQ_OK) status = obtain(r, t, &check, &exact, error);
+    if (status == LQ_OK)
+        status = lq_measure_factored(packed->factored, t->channel, exact, lq_is_mapping(t->kind),
+                                     &packed->measure, error);
+    lq_table_free(exact);
+    return status;
+}
+
+lq_status pack_make(const pack_request *r, lq_packed *packed, lq_error *error) {
+    return packed->from->factored ? make_factors(r, packed, error) : make_texture(r, packed, error);
+}

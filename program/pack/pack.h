@@ -1,0 +1,19 @@
+/* pack.h - what the parts of `lacquer pack` share. */
+#ifndef LACQUER_PROGRAM_PACK_PACK_H
+#define LACQUER_PROGRAM_PACK_PACK_H
+
+#include "pack/manifest.h"
+
+#include <limits.h>
+
+typedef struct pack_request {
+    const char *recipe_path, *output, *cache_given;
+    size_t threads;
+    char cache[PATH_MAX];
+    char build[64];
+} pack_request;
+
+/* The table of packed->from: computed or found in the cache, made into textures, measured. */
+lq_status pack_make(const pack_request *request, lq_packed *packed, lq_error *error);
+
+#endif

@@ -1,0 +1,57 @@
+/* certify.h - `lacquer validate` with a certificate: its options, and what its parts share. */
+#ifndef LACQUER_PROGRAM_VALIDATE_CERTIFY_H
+#define LACQUER_PROGRAM_VALIDATE_CERTIFY_H
+
+#include "program/verb.h"
+#include "validate/certificate_checks.h"
+
+enum {
+    CERTIFY_FIRST = 300,
+    CERTIFY_CERTIFICATE = CERTIFY_FIRST,
+    CERTIFY_ON,
+    CERTIFY_TABLE,
+    CERTIFY_JUNIT,
+    CERTIFY_REPORT,
+    CERTIFY_PARTS,
+    CERTIFY_LAST = CERTIFY_PARTS
+};
+
+/* Rows for the option list of the verb. */
+#define CERTIFY_OPTIONS                                                                                      \
+    {CERTIFY_CERTIFICATE, "certificate", NULL,                                                               \
+     "certify: 100000 points against the solver, worst point, error parts, physics"},                        \
+        {CERTIFY_ON, "on", "A=MIN:MAX,...", "certify this part of the axes only (default: all of them)"},    \
+        {CERTIFY_TABLE, "table", "FILE", "the table that a factor file was made from, for its error parts"}, \
+        {CERTIFY_PARTS, "parts", NULL, "of a pack: compute those tables anew, for all error parts"},         \
+        {CERTIFY_JUNIT, "junit", "FILE", "write the certificate's judgements as JUnit XML"}, {               \
+        CERTIFY_REPORT, "report", "DIR", "write the certificate as a web page, DIR/index.html"               \
+    }
+
+typedef struct certify_request {
+    bool wanted; /* any of these options, or a budget by norm */
+    const char *path;
+    lq_budgets budgets;
+    bool parts;
+    bool has_budget; /* otherwise a pack's own holds */
+    lq_rule domain;  /* --on */
+    const char *table, *junit, *report;
+    size_t points;
+    uint64_t seed;
+    int threads;
+    double tolerance;
+    bool json;
+} certify_request;
+
+/* Take one of the options above, or a --budget that is no plain number; false: a line was printed. */
+bool certify_take(certify_request *request, int id, const char *value);
+bool certify_take_budget(certify_request *request, const char *value);
+
+/* Is this something that only a certificate can be made of? A folder. */
+bool certify_takes_alone(const char *path);
+
+/* The whole of it; returns the exit code. */
+int validate_certify(const certify_request *request);
+
+void certify_print_text(const lq_certified *certified);
+
+#endif

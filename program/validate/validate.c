@@ -1,0 +1,281 @@
+/* validate.c - `lacquer validate`: a stored table against the exact solver and the random walk. */
+#include "program/validate/validate.h"
+
+#include "program/message.h"
+#include "program/options.h"
+#include "program/settings.h"
+#include "validate/walk.h"
+#include "validate/walk_kind.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE };
+
+static const cli_option options[] = {
+    {AGAINST, "against", "exact|walk|OTHER",
+     "the solver; random walks as well; another table, EXR or published (default exact)"},
+    {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table"},
+    {KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
+    {AXES, "axes", "AXES.json", "FILE is a .npy, EXR or C array of anybody's, described there"},
+    {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong"},
+    {SAMPLES, "samples", "N", "random walks per point (default 100000)"},
+    {POINTS, "points", "P", "points, half of them stored entries (default 256)"},
+    {SEED, "seed", "S", "of the points and of the walks (default 1)"},
+    {BUDGET, "budget", "E|max=E,p99=E|FILE",
+     "largest error that stored and interpolated values may have; by norm, or a budget file: certify"},
+    CERTIFY_OPTIONS,
+    {FORMAT, "format", "text|json", "of the report (default text)"},
+    {JSON, "json", NULL, "the same as --format json"},
+    CLI_SETTINGS_OPTIONS,
+    CLI_THREADS_OPTION,
+    {0},
+};
+
+static void print_notes(FILE *out) {
+    fprintf(
+        out,
+        "Half of the points are stored entries, half lie anywhere between them; a third has mu <= 0.1\n"
+        "and a third alpha <= 0.1. Compared are\n"
+        "  stored - exact         the file against the solver at a tenth of its tolerance\n"
+        "  interpolated - exact   the interpolation error between the nodes (judged by --budget only)\n"
+        "  stored - walk          the file against random walks that share its NDF and Fresnel code, no "
+        "more\n"
+        "  exact - walk           the solver itself against them, between the nodes\n"
+        "z is what a difference exceeds the stated tolerance by, in standard errors of the walk.\n"
+        "Exit code 2: a stored value is off by more than its tolerance, z is larger than chance\n"
+        "explains, or --budget is exceeded.\n\n"
+        "With --against OTHER, OTHER minus FILE is taken at every node of OTHER, or at --points P of them\n"
+        "drawn at random; where FILE has other nodes, what it says it holds is computed there. A published\n"
+        "FILE alone is compared with the solver; --ndf, --scattering, --masking and --tolerance say what\n"
+        "to compute, because it does not. Noise of independent samples is uncorrelated between\n"
+        "neighbours, a bias is not. What differs is held against the known other definitions. Exit code\n"
+        "2: --budget is exceeded or, without one, neither the tolerances nor such noise explain the\n"
+        "difference. docs/foreign.md describes AXES.json.\n\n"
+        "A certificate (--certificate, a budget by norm, --on, --junit, --report) takes 100000 exact values\n"
+        "anywhere between the nodes, uniform over the axes, searches for the worst point, states the\n"
+        "confidence of p99 and of the largest error, and checks physics; FILE is a table or the factors\n"
+        "of one, DIR a folder of them. docs/certificates.md describes it and the budget file.\n");
+}
+
+static int run(int argc, char **argv);
+
+const cli_verb cli_verb_validate = {
+    .name = "validate",
+    .summary = "check a stored table against the exact solver and random walks",
+    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]",
+    .options = options,
+    .notes = print_notes,
+    .examples = "lacquer validate fgd.exr\n"
+                "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
+                "lacquer validate fgd.exr --budget 1e-3 --format json\n"
+                "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
+                "lacquer validate tables/ --budget budget.json --report page --junit tables.xml\n"
+                "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate theirs.npy --axes theirs.json\n"
+                "lacquer validate fgd.exr --diagnose\n"
+                "lacquer validate hard-cases",
+    .run = run,
+};
+
+static bool take_against(validate_request *request, const char *text) {
+    request->walk = strcmp(text, "walk") == 0;
+    request->other = NULL;
+    if (request->walk || strcmp(text, "exact") == 0) return true;
+    request->other = text;
+    if (access(text, R_OK) == 0) return true;
+    cli_message("--against: '%s' is not exact, walk or a file that can be read", text);
+    return false;
+}
+
+static bool take_layout(validate_request *request, const char *text) {
+    const char *names[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) names[i] = lq_layout_name((lq_layout)i);
+    return (request->layout = cli_parse_choice("--layout", text, names, LQ_LAYOUTS)) >= 0;
+}
+
+static bool take_format(validate_request *request, const char *text) {
+    static const char *const choices[] = {"text", "json"};
+    const int choice = cli_parse_choice("--format", text, choices, 2);
+    request->json = choice == 1;
+    return choice >= 0;
+}
+
+static bool take(validate_request *request, int id, const char *value) {
+    size_t threads = 0;
+    if (id >= CERTIFY_FIRST && id <= CERTIFY_LAST) return certify_take(&request->certify, id, value);
+    if (id >= CLI_NDF && id < CLI_THREADS) return cli_settings_take(&request->settings, id, value) > 0;
+    switch (id) {
+    case AGAINST:
+        return take_against(request, value);
+    case SAMPLES:
+        return cli_parse_count("--samples", value, 2, LQ_WALK_MAX_SAMPLES, &request->samples);
+    case LAYOUT:
+        return take_layout(request, value);
+    case KIND:
+        request->kind = value;
+        return true;
+    case AXES:
+        request->axes = value;
+        return true;
+    case DIAGNOSE:
+        request->diagnose = true;
+        return true;
+    case POINTS:
+        request->points_given = true;
+        return cli_parse_count("--points", value, 2, 10000000, &request->points);
+    case SEED:
+        return cli_parse_count("--seed", value, 0, SIZE_MAX, &request->seed);
+    case BUDGET:
+        if (strchr(value, '=') || !cli_number(value, &request->budget))
+            return certify_take_budget(&request->certify, value);
+        return cli_parse_number("--budget", value, 1e-12, 1.0, &request->budget);
+    case JSON:
+        return request->json = true;
+    case FORMAT:
+        return take_format(request, value);
+    case CLI_THREADS:
+        if (!cli_parse_count("--threads", value, 1, 4096, &threads)) return false;
+        request->threads = (int)threads;
+        return true;
+    default:
+        break;
+    }
+    if (!request->file) {
+        request->file = value;
+        return true;
+    }
+    cli_message("one FILE at a time: '%s' after '%s'", value, request->file);
+    return false;
+}
+
+/* The word that stands in place of FILE; a file of that name is ./hard-cases. */
+static bool is_hard_cases(const validate_request *request) {
+    return strcmp(request->file, "hard-cases") == 0;
+}
+
+/* Of all options, the cases take the NDF, the format and the threads. */
+static bool suits_hard_cases(const validate_request *request) {
+    const cli_settings *settings = &request->settings;
+    const char *given = NULL;
+    if (settings->given[CLI_SCATTERING - CLI_NDF]) given = "--scattering";
+    if (settings->given[CLI_MASKING - CLI_NDF]) given = "--masking";
+    if (settings->given[CLI_TOLERANCE - CLI_NDF]) given = "--tolerance";
+    if (request->layout >= 0) given = "--layout";
+    if (request->kind) given = "--kind";
+    if (request->axes) given = "--axes";
+    if (request->diagnose) given = "--diagnose";
+    if (request->budget > 0.0) given = "--budget";
+    if (request->points_given) given = "--points";
+    if (request->walk || request->other) given = "--against";
+    if (given) cli_message("hard-cases takes no %s: every case has its own limit", given);
+    return !given;
+}
+
+/* Do the options about published tables go together? */
+static bool suits(const validate_request *request) {
+    const char *given = cli_settings_given(&request->settings);
+    const bool published = request->layout >= 0;
+    if (published && !request->kind)
+        cli_message("--layout needs --kind: a published file does not say which table it holds");
+    else if (!published && request->kind) cli_message("--kind needs --layout");
+    else if (request->axes && (published || request->other || request->walk || request->diagnose))
+        cli_message("--axes describes FILE alone: leave out --layout, --against and --diagnose");
+    else if (request->axes && given) cli_message("%s: %s says how FILE was made", given, request->axes);
+    else if (request->diagnose && (published || request->other || request->walk))
+        cli_message("--diagnose is for FILE alone; --layout and --against OTHER diagnose as they are");
+    else if (published && request->walk)
+        cli_message("a published table is not checked by walks; drop --layout or --against walk");
+    else if (given && (!published || request->other))
+        cli_message("%s: FILE says itself how it was made; a published FILE takes it, with --layout", given);
+    else return true;
+    return false;
+}
+
+static bool parse(validate_request *request, int argc, char **argv) {
+    *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
+    request->settings = cli_settings_default();
+    request->certify.budgets.count = 1;
+    bool samples_given = false;
+    cli_args args = cli_args_begin(&cli_verb_validate, argc, argv);
+    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
+        if (id == CLI_BAD || !take(request, id, args.value)) return false;
+        samples_given |= id == SAMPLES;
+    }
+    if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
+    else if (samples_given && !request->walk) cli_message("--samples needs --against walk");
+    else return is_hard_cases(request) ? suits_hard_cases(request) : suits(request);
+    return false;
+}
+
+lq_status validate_load_file(const char *path, lq_table **table, lq_origin *origin, lq_error *error) {
+    lq_status status = lq_table_read_exr(table, path, error);
+    if (status != LQ_OK) return status;
+    lq_error cause = {""};
+    status = lq_origin_of(*table, origin, &cause);
+    if (status != LQ_OK) snprintf(error->text, sizeof error->text, "%.200s: %.300s", path, cause.text);
+    return status;
+}
+
+static lq_status load(validate_job *job, lq_error *error) {
+    lq_status status = validate_load_file(job->request.file, &job->table, &job->origin, error);
+    /* Once, not at every point: an NDF may tabulate. */
+    if (status == LQ_OK) status = lq_ndf_open(&job->origin.settings.opened, job->origin.settings.ndf, error);
+    if (status == LQ_OK && job->request.walk && !lq_walk_knows(job->origin.kind)) {
+        status = LQ_BAD_INPUT;
+        snprintf(error->text, sizeof error->text, "no random walk is known for table '%s'",
+                 job->origin.kind->id);
+    }
+    job->origin.settings.threads = job->request.threads;
+    return status;
+}
+
+static int report(const validate_job *job) {
+    if (!job->request.json) validate_print_text(job);
+    else if (!validate_print_json(job))
+        return cli_fail("'%s' or its facts are not valid UTF-8", job->request.file);
+    return validate_complaint(job) ? CLI_EXCEEDED : CLI_DONE;
+}
+
+/* What the options that both ways of validating share say. */
+static int certify(validate_request *request) {
+    certify_request *c = &request->certify;
+    if (request->walk || request->other || request->layout >= 0 || request->axes || request->diagnose)
+        return cli_fail(
+            "a certificate is made against the solver; drop --against, --layout, --axes and --diagnose, "
+            "or the budget by norm");
+    c->path = request->file;
+    c->points = request->points_given ? request->points : 0;
+    c->seed = request->seed;
+    c->threads = request->threads;
+    c->json = request->json;
+    if (request->budget > 0.0) c->budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
+    c->has_budget |= request->budget > 0.0;
+    return validate_certify(c);
+}
+
+static int run(int argc, char **argv) {
+    validate_job job = {.table = NULL};
+    if (!parse(&job.request, argc, argv)) return CLI_FAILED;
+    if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
+    if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
+    if (job.request.other || job.request.layout >= 0 || job.request.axes || job.request.diagnose)
+        return validate_against(&job.request);
+    lq_error error = {""};
+    lq_status status = load(&job, &error);
+    if (job.table && lq_table_fact(job.table, "factors")) {
+        validate_free(&job);
+        return certify(&job.request);
+    }
+    if (status == LQ_OK) {
+        cli_progress bar;
+        cli_progress_begin(&bar, job.origin.kind->id);
+        status = validate_measure(&job, &bar.progress, &error);
+        cli_progress_end(&bar);
+    }
+    const int code = status == LQ_OK ? report(&job) : cli_fail_status(status, &error);
+    validate_free(&job);
+    return code;
+}
