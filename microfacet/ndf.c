@@ -3,7 +3,7 @@
 
 #include "microfacet/beckmann.h"
 #include "microfacet/ggx.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 #include "microfacet/ndf_file.h"
 
 #include "microfacet/ndf_samples.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "microfacet/ndf.h"
 #include "microfacet/ndf_file.h"
 #include "microfacet/student_t.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

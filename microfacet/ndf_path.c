@@ -1,6 +1,6 @@
 /* Which file an NDF came from: its path, and a hash of what it held. */
 #include "microfacet/ndf_file.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* NDFs compiled by their user: a shared object that exports one function (lacquer.h, "Plugins"). */
 #include "microfacet/ndf_file.h"
 #include "microfacet/profile.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <dlfcn.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "microfacet/ndf_samples.h"
 
 #include "microfacet/profile.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 
 #include "microfacet/kernels.h"
 #include "microfacet/panels.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -8,7 +8,7 @@
 #include "microfacet/student_t.h"
 
 #include "microfacet/profile.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "pack/cache.h"
 
 #include "pca/factors.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <dlfcn.h>
 #include <errno.h>

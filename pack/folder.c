@@ -1,7 +1,7 @@
 /* folder.c - staging beside the target, then one rename. */
 #include "pack/folder.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <dirent.h>
 #include <errno.h>

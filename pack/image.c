@@ -2,9 +2,9 @@
 #include "pack/image.h"
 
 #include "pack/bytes.h"
+#include "system/output.h"
+#include "system/status.h"
 #include "tables/half.h"
-#include "tables/output.h"
-#include "tables/status.h"
 
 #include <math.h>
 #include <stdio.h>

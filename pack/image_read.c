@@ -1,10 +1,10 @@
 /* image_read.c - the texels of an image back from any of its containers. */
 #include "pack/image.h"
 
+#include "system/input.h"
+#include "system/status.h"
 #include "tables/half.h"
-#include "tables/input.h"
 #include "tables/raw.h"
-#include "tables/status.h"
 
 #include <stdlib.h>
 #include <string.h>

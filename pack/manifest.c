@@ -4,10 +4,10 @@
 #include "pack/folder.h"
 #include "pack/source.h"
 #include "pca/factors_json.h"
+#include "system/input.h"
+#include "system/output.h"
+#include "system/status.h"
 #include "tables/exr_layout.h"
-#include "tables/input.h"
-#include "tables/output.h"
-#include "tables/status.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "fit/curve.h"
 #include "fit/phase.h"
 #include "microfacet/lobe.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "pack/measure.h"
 
 #include "pca/measure.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

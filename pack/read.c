@@ -5,10 +5,10 @@
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/factors_json.h"
+#include "system/input.h"
+#include "system/status.h"
 #include "tables/axis.h"
 #include "tables/exr_layout.h"
-#include "tables/input.h"
-#include "tables/status.h"
 
 #include <jansson.h>
 #include <math.h>

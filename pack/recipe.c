@@ -4,8 +4,8 @@
 #include "pack/mapping.h"
 #include "pack/recipe_text.h"
 #include "pack/texture.h"
+#include "system/status.h"
 #include "tables/axis.h"
-#include "tables/status.h"
 
 #include <math.h>
 #include <stdio.h>

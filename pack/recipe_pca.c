@@ -3,7 +3,7 @@
 
 #include "pca/options_text.h"
 #include "pca/piece.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* recipe_text.c - values of a recipe, and what is wrong with them, with the line. */
 #include "pack/recipe_text.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdio.h>
 #include <string.h>

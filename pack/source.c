@@ -6,8 +6,8 @@
 
 #include "pack/factored.h"
 #include "pack/source_text.h"
-#include "tables/output.h"
-#include "tables/status.h"
+#include "system/output.h"
+#include "system/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>

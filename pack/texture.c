@@ -1,7 +1,7 @@
 /* texture.c - a table as one texture: layout, and look-up as a sampler does it. */
 #include "pack/texture.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <ctype.h>
 #include <math.h>

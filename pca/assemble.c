@@ -14,8 +14,8 @@
 #include "pca/factors.h"
 #include "pca/low_rank.h"
 #include "pca/refine_parts.h"
+#include "system/status.h"
 #include "tables/half.h"
-#include "tables/status.h"
 
 enum { FINAL_SWEEPS = 4 }; /* of the plane's bases alone: weights settle after two or three */
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/status.h"
 #include "tables/facts.h"
 #include "tables/half.h"
-#include "tables/status.h"
 
 enum { GPU_FRACTION_BITS = 8 };
 

@@ -7,8 +7,8 @@
 
 #include "pca/factors.h"
 #include "pca/factors_json.h"
+#include "system/status.h"
 #include "tables/facts.h"
-#include "tables/status.h"
 
 #define STRUCTURE "factors"
 

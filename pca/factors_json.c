@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "pca/factors.h"
+#include "system/status.h"
 #include "tables/exr_layout.h"
-#include "tables/status.h"
 
 /* More than any useful factorisation, far below where sizes overflow. */
 enum { BASES_MAX = 4096, TERMS_MAX = 65536, TEXELS_MAX = 1 << 24 };

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tables/status.h"
+#include "system/status.h"
 
 enum {
     SPARE = 8,  /* vectors beyond the rank: they let the last wanted ones converge */

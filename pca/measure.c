@@ -6,7 +6,7 @@
 
 #include "pca/factors.h"
 #include "pca/measure.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 void lq_node_point(const lq_table *table, size_t entry, double *x) {
     for (int a = 0; a < table->axis_count; a++) {

@@ -1,7 +1,7 @@
 /* options_text.c - "tau:2,alpha:4", "mu=64:sqrt" and their like into lq_pca_options. */
 #include "pca/options_text.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>

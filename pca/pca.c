@@ -6,7 +6,7 @@
 #include "pca/factors.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 lq_pca_options lq_pca_options_default(void) {
     return (lq_pca_options){.struct_size = sizeof(lq_pca_options),

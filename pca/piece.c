@@ -7,7 +7,7 @@
 #include "pca/assemble.h"
 #include "pca/factors.h"
 #include "pca/sequential.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 /* ------------------------------------------------------------------ texels */
 

@@ -21,7 +21,7 @@
 
 #include "pca/low_rank.h"
 #include "pca/refine_parts.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 enum { CHUNK = 32 }; /* rows or columns a thread takes at a time: fixed, whatever the number of threads */
 

@@ -4,7 +4,7 @@
 
 #include "pca/low_rank.h"
 #include "pca/refine_parts.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 static size_t packed_at(size_t bases, size_t a, size_t b) {
     const size_t low = a < b ? a : b, high = a < b ? b : a;

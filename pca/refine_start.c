@@ -5,7 +5,7 @@
 
 #include "pca/low_rank.h"
 #include "pca/refine_parts.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 lq_status lq_fit_create(lq_fit *fit, lq_error *error) {
     for (int k = 0; k < fit->stream_count; k++) {

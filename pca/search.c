@@ -15,7 +15,7 @@
 #include "pca/measure.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 enum {
     QUICK_SWEEPS = 8, /* from 8 to 30 the largest error falls by some 10 to 30 % */

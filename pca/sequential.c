@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "pca/low_rank.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 void lq_chain_free(lq_chain *chain) {
     for (size_t i = 0; i <= chain->levels; i++) free(chain->data[i]);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "tables/status.h"
+#include "system/status.h"
 
 enum { TAPS = 4 };
 

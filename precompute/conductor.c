@@ -5,7 +5,7 @@
 #include "precompute/first_bounce.h"
 #include "precompute/kernels.h"
 #include "precompute/nodes.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

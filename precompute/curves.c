@@ -2,7 +2,7 @@
 #include "precompute/curves.h"
 
 #include "microfacet/fresnel.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

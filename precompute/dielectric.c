@@ -6,7 +6,7 @@
 #include "precompute/kernels.h"
 #include "precompute/krylov.h"
 #include "precompute/rough_level.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

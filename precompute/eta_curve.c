@@ -2,7 +2,7 @@
 #include "precompute/eta_curve.h"
 
 #include "precompute/series.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

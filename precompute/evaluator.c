@@ -2,7 +2,7 @@
 #include "precompute/evaluator.h"
 
 #include "precompute/kinds.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <string.h>

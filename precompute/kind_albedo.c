@@ -6,7 +6,7 @@
  */
 #include "precompute/first_bounce.h"
 #include "precompute/kinds.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

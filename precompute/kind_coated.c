@@ -1,7 +1,7 @@
 /* `coated-lambertian`: the albedo of a diffuse base under a rough coating (D22 eq. 3). */
 #include "precompute/kinds.h"
 #include "precompute/two_sided.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

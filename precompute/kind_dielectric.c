@@ -2,7 +2,7 @@
 #include "precompute/eta_curve.h"
 #include "precompute/kinds.h"
 #include "precompute/two_sided.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdlib.h>
 #include <string.h>

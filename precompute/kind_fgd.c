@@ -3,7 +3,7 @@
 #include "precompute/conductor.h"
 #include "precompute/first_bounce.h"
 #include "precompute/kinds.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include "microfacet/fresnel.h"
 

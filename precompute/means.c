@@ -1,7 +1,7 @@
 /* Cosine-weighted means of one interface, seen from the side where they converge: see two_sided.h. */
 #include "microfacet/panels.h"
 #include "precompute/two_sided.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* lq_eval and lq_precompute: an evaluator over one point, or over a grid on all cores. */
 #include "precompute/evaluator.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <omp.h>

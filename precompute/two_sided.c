@@ -3,7 +3,7 @@
 
 #include "precompute/first_bounce.h"
 #include "precompute/series.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
  * end SIGINT and SIGTERM first set a flag, which makes the next report return false, so that the work is
  * taken down in order. If that takes over a second, at a second Ctrl-C, and at any time outside begin and
  * end, they print one line and exit with CLI_INTERRUPTED at once: a file being written has no name yet
- * (tables/output.h), so nothing is left. */
+ * (system/output.h), so nothing is left. */
 #ifndef LACQUER_PROGRAM_PROGRESS_H
 #define LACQUER_PROGRAM_PROGRESS_H
 

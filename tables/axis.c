@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #define AXIS_FORMS                                                                                           \
     "accepted are MIN:MAX:N, MIN:MAX:N:MAP with MAP linear, sqrt or powerP (P > 0), one value, or an "       \

@@ -1,7 +1,7 @@
 /* The catalogue of table kinds: what each is, its axes and where it comes from. */
 #include "lacquer.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/status.h"
 #include "tables/axis.h"
 #include "tables/raw.h"
-#include "tables/status.h"
 
 typedef struct description {
     const char *path; /* of the JSON text */

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "system/status.h"
 #include "tables/axis.h"
-#include "tables/status.h"
 
 /* ------------------------------------------------------------------ to JSON */
 

@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "system/status.h"
 #include "tables/exr_layout.h"
-#include "tables/status.h"
 
 #define ACCEPTED "accepted is a table written by lacquer"
 

@@ -11,9 +11,9 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "system/output.h"
+#include "system/status.h"
 #include "tables/exr_layout.h"
-#include "tables/output.h"
-#include "tables/status.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "the floats are written as they lie in memory, which must be little-endian"

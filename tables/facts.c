@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/status.h"
 #include "tables/axis.h"
-#include "tables/status.h"
 
 const char *lq_facts_find(const lq_fact *facts, size_t count, const char *key) {
     for (size_t i = 0; i < count; i++)

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tables/output.h"
-#include "tables/status.h"
+#include "system/output.h"
+#include "system/status.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "the floats are written as they lie in memory, which must be little-endian"

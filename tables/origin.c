@@ -1,8 +1,8 @@
 /* Rebuilds kind and settings from the facts of a table, refusing what it does not understand. */
 #include "tables/origin.h"
 
+#include "system/status.h"
 #include "tables/facts.h"
-#include "tables/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* The SVG plotter: scales and ticks first, then the parts of the page from back to front. */
 #include "tables/plot.h"
 
-#include "tables/output.h"
-#include "tables/status.h"
+#include "system/output.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/input.h"
+#include "system/output.h"
+#include "system/status.h"
 #include "tables/axis.h"
-#include "tables/input.h"
-#include "tables/output.h"
 #include "tables/published.h"
-#include "tables/status.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "numbers are read and written as they lie in memory, which must be little-endian"

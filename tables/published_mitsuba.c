@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/output.h"
+#include "system/status.h"
 #include "tables/axis.h"
-#include "tables/output.h"
 #include "tables/published.h"
-#include "tables/status.h"
 
 static const char magic[] = "MTS_TRANSMITTANCE"; /* 17 bytes without the NUL */
 static const double warp = 4.0;

@@ -6,10 +6,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "system/input.h"
+#include "system/status.h"
 #include "tables/half.h"
-#include "tables/input.h"
 #include "tables/raw.h"
-#include "tables/status.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "numbers are read as they lie in memory, which must be little-endian"

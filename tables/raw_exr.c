@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/status.h"
 #include "tables/raw.h"
-#include "tables/status.h"
 
 enum { MOST_CHANNELS = 64 };
 #define MOST_PIXELS ((uint64_t)1 << 32)

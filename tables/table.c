@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "system/status.h"
 #include "tables/axis.h"
 #include "tables/facts.h"
-#include "tables/status.h"
 
 /* 2^33 floats, 32 GiB a channel: eight times the largest table anyone has asked for, and far below where
  * any product of sizes overflows. */

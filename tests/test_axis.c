@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "lacquer.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 static void assert_contains(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("'%s' does not contain '%s'", text, part);

@@ -5,27 +5,22 @@ set -euo pipefail
 cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
 
 declare -A may=(
-    [microfacet]=""
-    [tables]=""
-    [precompute]="microfacet tables"
-    [pca]="tables"
-    [fit]="microfacet tables"
-    [pack]="microfacet tables precompute pca fit"
-    [validate]="microfacet tables precompute pca fit pack"
-    [program]="microfacet tables precompute pca fit pack validate"
+    [system]=""
+    [microfacet]="system"
+    [tables]="system microfacet"
+    [precompute]="system microfacet tables"
+    [pca]="system tables"
+    [fit]="system microfacet tables"
+    [stack]="system microfacet tables precompute fit"
+    [pack]="system microfacet tables precompute pca fit stack"
+    [validate]="system microfacet tables precompute pca fit stack pack"
+    [program]="system microfacet tables precompute pca fit stack pack validate"
 )
 failed=0
 
 complain() { # FILE:LINE INCLUDE WHY
     echo "$1: #include \"$2\": $3" >&2
     failed=1
-}
-
-allowed_rooms() { # FILE ROOM
-    printf '%s' "lacquer.h $2 ${may[$2]}"
-    # an NDF that is opened may fail, with a message
-    case $1 in microfacet/ndf*.c | microfacet/profile.c | microfacet/gtr.c | microfacet/student_t.c)
-        printf ' tables' ;; esac
 }
 
 check() { # FILE LINE INCLUDED
@@ -35,7 +30,7 @@ check() { # FILE LINE INCLUDED
     ../* | */../* | ./*) complain "$where" "$included" "is not relative to the root" ;;
     esac
     [ -e "$included" ] || complain "$where" "$included" "no such file from the root"
-    case " $(allowed_rooms "$file" "$room") " in
+    case " lacquer.h $room ${may[$room]} " in
     *" $target "*) ;;
     *) complain "$where" "$included" "$room/ may not include it" ;;
     esac

@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "lacquer.h"
-#include "tables/output.h"
+#include "system/output.h"
 #include "tests/scratch.h"
 
 static void assert_contains(const char *text, const char *part) {

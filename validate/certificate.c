@@ -2,7 +2,7 @@
 #include "validate/certificate.h"
 
 #include "pack/measure.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/certificate_confidence.h"
 
 #include <math.h>

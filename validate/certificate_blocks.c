@@ -3,7 +3,7 @@
 
 #include "pack/mapping.h"
 #include "precompute/evaluator.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/stream.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Budgets from text and from JSON; whatever is not understood is refused by name. */
 #include "validate/certificate_budget.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <jansson.h>

@@ -3,7 +3,7 @@
 #include "validate/certificate_checks.h"
 
 #include "pca/factors.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/stream.h"
 
 #include <math.h>

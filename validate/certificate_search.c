@@ -6,7 +6,7 @@
  */
 #include "validate/certificate.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <omp.h>

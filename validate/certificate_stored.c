@@ -7,7 +7,7 @@
  */
 #include "validate/certificate_checks.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/certificate_suspects.h"
 #include "validate/stream.h"
 

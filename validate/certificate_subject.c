@@ -5,9 +5,9 @@
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/factors_json.h"
+#include "system/status.h"
 #include "tables/facts.h"
 #include "tables/half.h"
-#include "tables/status.h"
 #include "validate/stream.h"
 
 #include <math.h>

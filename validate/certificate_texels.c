@@ -10,7 +10,7 @@
 #include "validate/certificate_checks.h"
 
 #include "pca/factors.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/certificate_suspects.h"
 #include "validate/stream.h"
 

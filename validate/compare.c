@@ -1,7 +1,7 @@
 /* Error metrics: maximum, rms, bias, percentile, and scores with a limit for many comparisons at once. */
 #include "validate/compare.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>

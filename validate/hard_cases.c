@@ -1,7 +1,7 @@
 /* Hard cases: single points against their limits, and whole grids of ends and limits against their range. */
 #include "validate/hard_cases.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/hard_cases_list.h"
 #include "validate/smooth_limit.h"
 

@@ -1,7 +1,7 @@
 /* Noise or bias: correlation of neighbouring residuals, and the reference looked up at shifted nodes. */
 #include "validate/pattern.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/compare.h"
 
 #include <math.h>

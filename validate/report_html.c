@@ -1,8 +1,8 @@
 /* The page of a certificate: one file that needs no other, readable without scripts. */
 #include "validate/report.h"
 
-#include "tables/output.h"
-#include "tables/status.h"
+#include "system/output.h"
+#include "system/status.h"
 #include "validate/report_maps.h"
 #include "validate/report_ranks.h"
 

@@ -1,7 +1,7 @@
 /* Certificates as JSON: docs/certificates.md lists the members. */
 #include "validate/report.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/certificate_confidence.h"
 
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* Certificates as JUnit XML, which build servers read: a table is a suite, a judgement a case. */
 #include "validate/report.h"
 
-#include "tables/output.h"
+#include "system/output.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  * nodes. */
 #include "validate/variants.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "validate/walk.h"
 
 #include "microfacet/fresnel.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/sample_visible.h"
 #include "validate/walk_ray.h"
 #include "validate/walk_reduce.h"

@@ -2,7 +2,7 @@
 #include "validate/walk_kind.h"
 
 #include "microfacet/lobe.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/walk_lobe.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Fixed blocks of samples, each summed by one thread; the blocks are then joined in their order. */
 #include "validate/walk_reduce.h"
 
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <omp.h>

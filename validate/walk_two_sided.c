@@ -4,7 +4,7 @@
  * sides run the same code. The depth there is t' = -ln(1 - e^-t), and t <-> t' loses nothing at either end.
  */
 #include "microfacet/fresnel.h"
-#include "tables/status.h"
+#include "system/status.h"
 #include "validate/walk.h"
 #include "validate/walk_ray.h"
 #include "validate/walk_reduce.h"

@@ -1,8 +1,8 @@
 /* print.c - the figures of `lacquer bench`: text, CSV and the chart. */
 #include "program/bench/bench.h"
 
+#include "system/output.h"
 #include "tables/origin.h"
-#include "tables/output.h"
 #include "tables/plot.h"
 
 #include <math.h>

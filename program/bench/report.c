@@ -5,8 +5,8 @@
 #include "program/output.h"
 #include "program/progress.h"
 #include "program/verb.h"
+#include "system/output.h"
 #include "tables/origin.h"
-#include "tables/output.h"
 #include "tables/plot.h"
 
 #include <errno.h>

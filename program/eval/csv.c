@@ -3,7 +3,7 @@
 
 #include "program/message.h"
 #include "program/verb.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <omp.h>

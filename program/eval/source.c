@@ -2,7 +2,7 @@
 #include "program/eval/eval.h"
 
 #include "program/options.h"
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "microfacet/lobe.h"
 #include "program/message.h"
 #include "program/progress.h"
-#include "tables/output.h"
+#include "system/output.h"
 #include "validate/sample_visible.h"
 #include "validate/stream.h"
 

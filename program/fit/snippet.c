@@ -1,7 +1,7 @@
 /* f and its inverse as source: GLSL, HLSL or C, by the ending of the file. */
 #include "program/fit/fit.h"
 #include "program/message.h"
-#include "tables/output.h"
+#include "system/output.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The result of a fit as JSON, and the curve itself as a table. */
 #include "program/fit/bounces.h"
 #include "program/message.h"
-#include "tables/output.h"
+#include "system/output.h"
 
 #include <jansson.h>
 #include <math.h>

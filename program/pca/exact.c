@@ -2,8 +2,8 @@
 #include "pca/measure.h"
 #include "program/message.h"
 #include "program/pca/pca.h"
+#include "system/status.h"
 #include "tables/origin.h"
-#include "tables/status.h"
 
 void pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_table *table,
                       const lq_table *against) {

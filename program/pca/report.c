@@ -6,7 +6,7 @@
 
 #include "program/message.h"
 #include "program/pca/pca.h"
-#include "tables/output.h"
+#include "system/output.h"
 #include "tables/plot.h"
 
 static const char *const value_names[LQ_VALUES] = {"plain", "square", "beer"};

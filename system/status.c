@@ -1,5 +1,5 @@
 /* status.c - messages: one line, always terminated, never longer than an lq_error holds. */
-#include "tables/status.h"
+#include "system/status.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* input.h - whole files into memory. */
-#ifndef LACQUER_TABLES_INPUT_H
-#define LACQUER_TABLES_INPUT_H
+#ifndef LACQUER_SYSTEM_INPUT_H
+#define LACQUER_SYSTEM_INPUT_H
 
 #include "lacquer.h"
 

@@ -1,6 +1,6 @@
 /* output.h - files that appear whole or not at all; every writer of the project goes through here. */
-#ifndef LACQUER_TABLES_OUTPUT_H
-#define LACQUER_TABLES_OUTPUT_H
+#ifndef LACQUER_SYSTEM_OUTPUT_H
+#define LACQUER_SYSTEM_OUTPUT_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* status.h - the one place where the messages of the library are made. */
-#ifndef LACQUER_TABLES_STATUS_H
-#define LACQUER_TABLES_STATUS_H
+#ifndef LACQUER_SYSTEM_STATUS_H
+#define LACQUER_SYSTEM_STATUS_H
 
 #include "lacquer.h"
 

@@ -1,6 +1,6 @@
 /* output.c - atomic output: write to an unnamed file, then link and rename it into place. */
 #define _GNU_SOURCE /* O_TMPFILE, eaccess, vasprintf */
-#include "tables/output.h"
+#include "system/output.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tables/status.h"
+#include "system/status.h"
 
 /* Lines of text are some 50 bytes: one system call for a thousand of them. */
 enum { BUFFER_SIZE = 1 << 16 };

@@ -1,11 +1,11 @@
 /* input.c - whole files into memory. */
-#include "tables/input.h"
+#include "system/input.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#include "tables/status.h"
+#include "system/status.h"
 
 lq_status lq_input_read(const char *path, char **bytes, size_t *size, lq_error *error) {
     struct stat there;
