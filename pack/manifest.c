@@ -1,7 +1,7 @@
 /* manifest.c - manifest.json of a pack. */
 #include "pack/manifest.h"
 
-#include "pack/folder.h"
+#include "pack/contents.h"
 #include "pack/source.h"
 #include "pca/factors_json.h"
 #include "system/input.h"
@@ -215,11 +215,12 @@ lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, co
     }
     for (int l = 0; l < LQ_LANGUAGES; l++)
         json_array_append_new(sources, json_string(lq_source_file((lq_language)l)));
-    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:I, s:o, s:o}", "pack", recipe->name, "made-by",
-                             "lacquer " LQ_VERSION, "orientation",
-                             "texel 0 of every axis is its min and is stored first", "sampler",
-                             "linear filter, clamp to edge, no mip levels", "texture-bytes",
-                             (json_int_t)bytes, "decode", sources, "tables", tables);
+    json_t *root =
+        json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o}", "format", LQ_PACK_FORMAT, "version",
+                  LQ_PACK_VERSION, "pack", recipe->name, "made-by", "lacquer " LQ_VERSION, "orientation",
+                  "texel 0 of every axis is its min and is stored first", "sampler",
+                  "linear filter, clamp to edge, no mip levels", "texture-bytes", (json_int_t)bytes, "decode",
+                  sources, "tables", tables, "files", lq_contents_list(folder));
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     if (!text) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);

@@ -1,7 +1,7 @@
 /* read.c - a pack from its folder. */
 #include "pack/read.h"
 
-#include "pack/folder.h"
+#include "pack/contents.h"
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/factors_json.h"

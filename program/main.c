@@ -6,8 +6,10 @@
 #include "program/verb.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char usage[] = "Usage: lacquer VERB [arguments]\n"
                             "\n"
@@ -88,7 +90,16 @@ static int run(int argc, char **argv) {
     return verb->run(argc - 1, argv + 1);
 }
 
+/* A closed stream's number would be given to the next file that is opened. Open the other way about, it still
+ * fails where it is used. */
+static void fill_closed_streams(void) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0)
+            return;
+}
+
 int main(int argc, char **argv) {
+    fill_closed_streams();
     /* A write beyond a file size limit must come back as an error that cleans up, not as a kill. */
     signal(SIGXFSZ, SIG_IGN);
     cli_catch_signals();

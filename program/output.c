@@ -2,6 +2,7 @@
 #include "program/output.h"
 
 #include "program/message.h"
+#include "system/output.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -40,6 +41,7 @@ bool cli_output_check(const char *path) {
     if (stat(path, &there) == 0 && S_ISDIR(there.st_mode)) return refuse(path, "it is a folder, not a file");
     if (path[length] == '\0') return refuse(path, "that is not the name of a file");
     if (stat(path, &there) == 0 && access(path, W_OK) != 0) return refuse(path, strerror(errno));
+    if (lq_output_is_protected(path)) return refuse(path, "it is another user's, in a sticky folder");
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
         return true; /* a device or pipe is written as it is */
     if (strlen(path) >= sizeof folder) return refuse(path, strerror(ENAMETOOLONG));

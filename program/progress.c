@@ -33,6 +33,11 @@ static void ask_to_stop(int number) {
     alarm(PATIENCE);
 }
 
+static void note(int number) {
+    (void)number;
+    interrupted = 1;
+}
+
 bool cli_interrupted(void) {
     return interrupted != 0;
 }
@@ -79,6 +84,14 @@ static void on_signals(void (*handler)(int)) {
 }
 
 void cli_catch_signals(void) {
+    on_signals(exit_now);
+}
+
+void cli_signals_hold(void) {
+    on_signals(note);
+}
+
+void cli_signals_release(void) {
     on_signals(exit_now);
 }
 

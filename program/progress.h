@@ -29,6 +29,10 @@ void cli_progress_end(cli_progress *bar);
 /* For main: from here on SIGINT and SIGTERM do as described above. */
 void cli_catch_signals(void);
 
+/* Between these a signal only sets the flag, for work that would leave something behind. */
+void cli_signals_hold(void);
+void cli_signals_release(void);
+
 /* True once SIGINT or SIGTERM came, for loops of a verb's own. */
 bool cli_interrupted(void);
 

@@ -61,7 +61,27 @@ static lq_status refuse_open(const char *path, int cause, lq_error *error) {
                    path, shown, folder, strerror(cause));
 }
 
+bool lq_output_is_protected(const char *path) {
+    struct stat info, parent;
+    char folder[PATH_MAX];
+    const size_t length = folder_length(path);
+    if (length >= sizeof folder || lstat(path, &info) != 0) return false;
+    memcpy(folder, path, length);
+    memcpy(folder + length, ".", 2);
+    const uid_t user = geteuid();
+    return stat(folder, &parent) == 0 && (parent.st_mode & S_ISVTX) && user != 0 && user != parent.st_uid &&
+           user != info.st_uid;
+}
+
 /* ------------------------------------------------------------------ opening */
+
+/* A program whose standard streams were closed must not find a table where it prints. */
+static int above_streams(int file) {
+    if (file < 0 || file > STDERR_FILENO) return file;
+    const int higher = fcntl(file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    close(file);
+    return higher;
+}
 
 /* The unnamed file, if it can be named later on: that takes /proc. */
 static int open_unnamed(const char *target) {
@@ -102,6 +122,9 @@ static lq_status inspect(lq_output *output, lq_error *error) {
     if (exists && eaccess(output->path, W_OK) != 0)
         return lq_fail(error, LQ_IO, "%s: %s; accepted is a file that may be replaced", output->path,
                        strerror(errno));
+    if (exists && !output->direct && lq_output_is_protected(output->path))
+        return lq_fail(error, LQ_IO, "%s: another user's, in a sticky folder; accepted is a file of your own",
+                       output->path);
     output->target = exists && !output->direct ? realpath(output->path, NULL) : strdup(output->path);
     output->temporary = output->target ? calloc(1, strlen(output->target) + 64) : NULL;
     if (output->temporary) return LQ_OK;
@@ -110,13 +133,13 @@ static lq_status inspect(lq_output *output, lq_error *error) {
 
 static lq_status open_file(lq_output *output, lq_error *error) {
     if (output->direct) {
-        output->file = open(output->path, O_WRONLY | O_CLOEXEC);
+        output->file = above_streams(open(output->path, O_WRONLY | O_CLOEXEC));
         if (output->file >= 0) return LQ_OK;
         return lq_fail(error, LQ_IO, "%s: cannot open it: %s; accepted is a file that can be written",
                        output->path, strerror(errno));
     }
-    output->file = open_unnamed(output->target);
-    if (output->file < 0) output->file = open_named(output);
+    output->file = above_streams(open_unnamed(output->target));
+    if (output->file < 0) output->file = above_streams(open_named(output));
     return output->file >= 0 ? LQ_OK : refuse_open(output->path, errno, error);
 }
 
@@ -229,7 +252,14 @@ static int link_unnamed(lq_output *output) {
     return -1;
 }
 
+/* A file that only its owner could read stays so when it is replaced. */
+static void keep_permissions(const lq_output *output) {
+    struct stat older;
+    if (!output->direct && stat(output->target, &older) == 0) fchmod(output->file, older.st_mode & 07777);
+}
+
 static lq_status publish(lq_output *output, lq_error *error) {
+    keep_permissions(output);
     bool named = output->direct || *output->temporary || link_unnamed(output) == 0;
     if (!named) return refuse_open(output->path, errno, error);
     int failed = close(output->file);

@@ -23,12 +23,15 @@ lq_status lq_output_print(lq_output *output, lq_error *error, const char *format
 lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, uint64_t offset,
                              lq_error *error);
 
-/* Publish the file under its name, replacing an older one, and free `output`. On an error nothing is left
+/* Publish the file under its name, replacing an older one, whose permissions it takes, and free `output`. On an error nothing is left
  * behind and the older file stands. */
 lq_status lq_output_commit(lq_output *output, lq_error *error);
 
 /* All of that for a file whose bytes are at hand. */
 lq_status lq_output_save(const char *path, const void *bytes, size_t size, lq_error *error);
+
+/* Whether `path` is another user's in a sticky folder (/tmp), where only its owner may replace it. */
+bool lq_output_is_protected(const char *path);
 
 /* Forget the file and free `output` (NULL is fine): as if it had never been opened. */
 void lq_output_abandon(lq_output *output);

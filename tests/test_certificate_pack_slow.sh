@@ -91,6 +91,7 @@ plant r01.0_0.ktx2 5 4 3 && cp one/manifest.json bad/manifest.json
 found 'FAILED +files as made .*first: r01.0_0.ktx2'
 
 # Another masking than it says.
+rm -rf bad
 recipe other '"ktx2"' separable >other.json
 "$lacquer" pack other.json -o bad --cache cache >/dev/null
 sed -i 's/"masking": "separable"/"masking": "correlated"/' bad/manifest.json
@@ -105,6 +106,7 @@ cat >shifted.json <<'END_OF_RECIPE'
 END_OF_RECIPE
 "$lacquer" pack shifted.json -o shifted --cache cache >/dev/null
 sed 's/0.02:1:48"/0.03020833:0.98979167:48"/' shifted.json >centres.json
+rm -rf bad
 "$lacquer" pack centres.json -o bad --cache cache >/dev/null
 cp shifted/manifest.json bad/manifest.json
 sed -i '/"crc32"/d; s/"format": "KTX 2.0",/"format": "KTX 2.0"/' bad/manifest.json

@@ -88,13 +88,24 @@ static lq_status write_all(const lq_recipe *recipe, const lq_packed *packed, con
     lq_folder folder;
     lq_status status = lq_folder_open(&folder, target, error);
     if (status != LQ_OK) return status;
-    for (size_t i = 0; i < recipe->count && status == LQ_OK; i++)
+    for (size_t i = 0; i < recipe->count && status == LQ_OK; i++) {
         status = write_one(recipe, &packed[i], folder.staging, error);
+        if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
+    }
     if (status == LQ_OK) status = write_sources(recipe, packed, folder.staging, error);
     if (status == LQ_OK) status = lq_manifest_write(recipe, packed, folder.staging, error);
     if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
     if (status == LQ_OK) status = lq_folder_commit(&folder, error);
     if (status != LQ_OK) lq_folder_abandon(&folder);
+    return status;
+}
+
+/* A signal does not end the program while there is a folder to clear. */
+static lq_status write_held(const lq_recipe *recipe, const lq_packed *packed, const char *target,
+                            lq_error *error) {
+    cli_signals_hold();
+    const lq_status status = write_all(recipe, packed, target, error);
+    cli_signals_release();
     return status;
 }
 
@@ -130,11 +141,10 @@ static int judge(const pack_request *r, const lq_recipe *recipe, const lq_packed
 
 static int pack(const pack_request *r, const lq_recipe *recipe, lq_packed *packed) {
     lq_error error = {""};
-    lq_folder probe;
-    /* Can the target be written? Asked before the work. */
-    lq_status status = lq_folder_open(&probe, r->output, &error);
+    cli_signals_hold();
+    lq_status status = lq_folder_check(r->output, &error); /* before the work */
+    cli_signals_release();
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    lq_folder_abandon(&probe);
     for (size_t i = 0; i < recipe->count; i++) {
         packed[i].from = &recipe->tables[i];
         status = pack_make(r, &packed[i], &error);
@@ -142,7 +152,7 @@ static int pack(const pack_request *r, const lq_recipe *recipe, lq_packed *packe
     }
     const int code = judge(r, recipe, packed);
     if (code != CLI_DONE) return code; /* the target stays as it was */
-    status = write_all(recipe, packed, r->output, &error);
+    status = write_held(recipe, packed, r->output, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 
@@ -190,6 +200,6 @@ const cli_verb cli_verb_pack = {
     .options = options,
     .notes = print_notes,
     .examples = "lacquer pack recipes/realtime.json -o realtime\n"
-                "lacquer pack recipes/dfg.json -o textures --cache /tmp/lacquer",
+                "lacquer pack recipes/dfg.json -o textures --cache ~/tables",
     .run = run,
 };

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# lacquer pack never removes what is not its own: foreign folders, added or changed files, links; signals and kills
+# leave no staging folder behind.
+set -euo pipefail
+cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
+lacquer=${LACQUER:-$PWD/build/release/lacquer}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+export XDG_CACHE_HOME=$scratch/xdg
+
+fail() {
+    echo "FAILED: $*" >&2
+    exit 1
+}
+
+cat >small.json <<'END'
+{"name": "small", "formats": ["npy", "c"], "points": 100,
+ "tables": [{"table": "albedo", "axes": {"mu": "0:1:8", "alpha": "0:1:8"}, "tolerance": 1e-3}]}
+END
+"$lacquer" pack small.json -o good >/dev/null
+
+entries() {
+    { find . "$1/" -maxdepth 1 ! -path './message.txt' ! -path './before.txt' 2>/dev/null || true; } | sort
+}
+
+refuse() { # FOLDER PATTERN: exit 1, one line, everything still there
+    local code=0
+    entries "$1" >before.txt
+    "$lacquer" pack small.json -o "$1" >/dev/null 2>message.txt || code=$?
+    [ "$code" = 1 ] || fail "-o $1: exit $code: $(cat message.txt)"
+    [ "$(wc -l <message.txt)" = 1 ] && grep -qE "$2" message.txt || fail "-o $1: '$(cat message.txt)', not $2"
+    entries "$1" | diff before.txt - || fail "-o $1 changed"
+}
+
+# --------------------------------------------------- a web app, with a manifest of its own
+mkdir -p web/src && echo '{}' >web/manifest.json && echo x >web/thesis.tex
+refuse web 'web.*no pack of this program'
+[ "$(cat web/thesis.tex)" = x ] && [ -d web/src ] || fail "a foreign folder lost its files"
+ln -s web link && refuse link 'link.*no pack of this program'
+[ -L link ] || fail "the link is gone"
+echo '{"format": "lacquer-pack", "version": 99, "files": {}}' >web/manifest.json
+refuse web 'version 99'
+echo '{"format": "lacquer-pack", "version": 1, "files": {"../small.json": "00000000"}}' >web/manifest.json
+refuse web 'damaged'
+echo '{"format": "lacquer-pack", "version": 1, "files": {}}' >web/manifest.json
+refuse web "cannot replace .*'(src|thesis.tex)' is not part of the pack"
+
+# --------------------------------------------------- packs with something added, or changed
+cp -r good added && echo x >added/notes.txt
+refuse added "'notes.txt' is not part of the pack"
+cp -r good nested && mkdir nested/deeper
+refuse nested "'deeper' is not part of the pack"
+cp -r good changed && echo '// mine' >>changed/decode.h
+refuse changed "'decode.h' was changed"
+cp -r good swapped && mv swapped/decode.h mine.h && ln -s "$PWD/small.json" swapped/decode.h
+refuse swapped "'decode.h' was changed"
+
+# --------------------------------------------------- what may be replaced: a pack, an empty folder, one behind a link
+cp -r good again && "$lacquer" pack small.json -o again >/dev/null && diff -r good again || fail "a pack is not replaced"
+mkdir empty && "$lacquer" pack small.json -o empty/ >/dev/null && diff -r good empty || fail "an empty folder"
+cp -r good real && ln -s real to-real && "$lacquer" pack small.json -o to-real >/dev/null || fail "through a link"
+[ -L to-real ] && diff -r good real || fail "a link was replaced"
+
+# --------------------------------------------------- before the work: the current folder, the root, a file, nothing
+cd empty
+code=0
+"$lacquer" pack ../small.json -o . >/dev/null 2>../message.txt || code=$?
+cd ..
+[ "$code" = 1 ] && grep -q 'current folder' message.txt || fail "-o .: $code, $(cat message.txt)"
+refuse / 'root of a file system'
+refuse small.json 'it is a file'
+ln -s nowhere dangling && refuse dangling 'link to nothing'
+
+# --------------------------------------------------- signals while files are written leave nothing; kill -9 is cleared
+for i in $(seq 1 40); do
+    "$lacquer" pack small.json -o "signal$((i % 2))" >/dev/null 2>&1 &
+    job=$!
+    sleep "0.0$((RANDOM % 60 + 10))"
+    if [ $((i % 4)) -lt 2 ]; then kill -TERM "$job" 2>/dev/null || true; else kill -INT "$job" 2>/dev/null || true; fi
+    wait "$job" || true
+    [ -z "$(find . -maxdepth 1 -name '*.new-*')" ] || fail "a signal left $(ls -d ./*.new-*)"
+done
+mkdir killed.new-AAAAAA && touch killed.new-AAAAAA/.lacquer-staging killed.new-AAAAAA/dfg.ktx2 # as kill -9 leaves it
+mkdir killed.new-BBBBBB && touch killed.new-BBBBBB/thesis.tex                                  # a folder of someone's
+mkdir killed.new-CCCCCC && touch killed.new-CCCCCC/.lacquer-staging                            # one at work
+flock killed.new-CCCCCC "$lacquer" pack small.json -o killed >/dev/null
+[ ! -e killed.new-AAAAAA ] || fail "what kill -9 left is not cleared"
+[ -e killed.new-BBBBBB/thesis.tex ] || fail "a folder that only has the name was cleared"
+[ -e killed.new-CCCCCC ] || fail "the folder of a run at work was cleared"
