@@ -1,9 +1,10 @@
 /* factored.c - four bases of a factor in each layer of a texture array. */
 #include "pack/factored.h"
 
+#include "pack/names.h"
 #include "pca/factors.h"
 
-#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 static lq_status lay_out(lq_bases *bases, const lq_factor *factor, const char *name, lq_error *error) {
@@ -26,9 +27,7 @@ lq_status lq_factored_layout(lq_factored_textures *textures, const lq_factored *
     lq_status status = LQ_OK;
     *textures = (lq_factored_textures){.factored = factored};
     snprintf(textures->stem, sizeof textures->stem, "%s", name);
-    snprintf(textures->name, sizeof textures->name, "%s", name);
-    for (char *c = textures->name; *c; c++)
-        if (!isalnum((unsigned char)*c)) *c = '_';
+    lq_make_identifier(textures->name, name);
     for (int p = 0; p < factored->piece_count; p++)
         for (int f = 0; f < factored->pieces[p].factor_count && status == LQ_OK; f++) {
             lq_bases *bases = &textures->bases[textures->count++];

@@ -44,7 +44,8 @@ static void compress(lq_bytes *texels) {
     packed.failed = texels->failed || !packed.data;
     if (!packed.failed)
         packed.size = ZSTD_compress(packed.data, packed.room, texels->data, texels->size, ZSTD_LEVEL);
-    if (!packed.failed) packed.failed = ZSTD_isError(packed.size) != 0;
+    if (!packed.failed && ZSTD_isError(packed.size)) packed.failed = true;
+    if (packed.failed) packed.size = 0; /* an error code is no size */
     free(texels->data);
     *texels = packed;
 }

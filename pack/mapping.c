@@ -50,7 +50,9 @@ const lq_kind *lq_mapping_find(const char *id, lq_error *error) {
 }
 
 bool lq_is_mapping(const lq_kind *kind) {
-    return kind >= mappings && kind < mappings + MAPPINGS;
+    for (size_t i = 0; i < MAPPINGS; i++)
+        if (kind == &mappings[i]) return true;
+    return false;
 }
 
 double lq_mapping_value(const lq_kind *kind, const lq_curve *curve, double x) {

@@ -2,6 +2,7 @@
 #include "pack/recipe.h"
 
 #include "pack/mapping.h"
+#include "pack/names.h"
 #include "pack/recipe_text.h"
 #include "pack/texture.h"
 #include "system/status.h"
@@ -199,6 +200,14 @@ static lq_status read_ndf(lq_recipe_reader *r, json_t *root) {
     return r->recipe->ndf ? LQ_OK : lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
 }
 
+static lq_status check_names(lq_recipe_reader *r) {
+    lq_error why = {""};
+    size_t culprit = 0;
+    if (lq_names_check(r->recipe, &culprit, &why) == LQ_OK) return LQ_OK;
+    r->entry = (int)culprit;
+    return lq_refuse(r, r->recipe->tables[culprit].name, why.text);
+}
+
 static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     double budget[2] = {INFINITY, INFINITY}, bytes = 0.0;
     size_t points = POINTS;
@@ -223,7 +232,7 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
         r->entry = (int)i;
         status = read_table(r, json_array_get(tables, i), budget, points);
     }
-    return status;
+    return status == LQ_OK ? check_names(r) : status;
 }
 
 /* The whole file, with a zero after it; NULL and a message where that fails. */

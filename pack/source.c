@@ -18,6 +18,11 @@ const char *lq_source_file(lq_language language) {
     return files[language];
 }
 
+const char *const *lq_source_helpers(void) {
+    static const char *const helpers[] = {"texel", "clamp", "clamp01", "filter", "critical", "cosine", NULL};
+    return helpers;
+}
+
 static const char glsl_head[] =
     "/* Bind each texture with linear filtering, clamp to edge, no mip levels. */\n"
     "#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n"

@@ -9,6 +9,10 @@ typedef enum lq_language { LQ_GLSL, LQ_HLSL, LQ_C, LQ_LANGUAGES } lq_language;
 /* "decode.glsl", "decode.hlsl", "decode.h" */
 const char *lq_source_file(lq_language language);
 
+/* The functions that the decode source of any language has besides those of the tables, without "lacquer_";
+ * ends with NULL. */
+const char *const *lq_source_helpers(void);
+
 /* A table to decode: one texture, or where that is NULL the textures of its factors. */
 typedef struct lq_source_table {
     const lq_kind *kind;

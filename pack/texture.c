@@ -1,9 +1,9 @@
 /* texture.c - a table as one texture: layout, and look-up as a sampler does it. */
 #include "pack/texture.h"
 
+#include "pack/names.h"
 #include "system/status.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,13 +28,6 @@ lq_status lq_texture_check(const char *name, const lq_axis *axes, int axis_count
         return lq_fail(error, LQ_BAD_INPUT, "%s: %d channels; a texture takes at most 4", name,
                        channel_count);
     return LQ_OK;
-}
-
-/* Letters and digits, anything else becomes '_'. */
-static void make_identifier(char *to, const char *name) {
-    snprintf(to, LQ_NAME_SIZE, "%s", name);
-    for (; *to; to++)
-        if (!isalnum((unsigned char)*to)) *to = '_';
 }
 
 static lq_status copy_axes(lq_texture *texture, const lq_table *table, lq_error *error) {
@@ -64,7 +57,7 @@ static lq_status fill(lq_texture *texture, const lq_table *table, lq_error *erro
 
 lq_status lq_texture_make(lq_texture *texture, const lq_table *table, const char *name, lq_error *error) {
     *texture = (lq_texture){0};
-    make_identifier(texture->name, name);
+    lq_make_identifier(texture->name, name);
     lq_status status = lq_texture_check(name, table->axes, table->axis_count, table->channel_count, error);
     if (status == LQ_OK) status = copy_axes(texture, table, error);
     if (status == LQ_OK) status = fill(texture, table, error);

@@ -88,3 +88,62 @@ flock killed.new-CCCCCC "$lacquer" pack small.json -o killed >/dev/null
 [ ! -e killed.new-AAAAAA ] || fail "what kill -9 left is not cleared"
 [ -e killed.new-BBBBBB/thesis.tex ] || fail "a folder that only has the name was cleared"
 [ -e killed.new-CCCCCC ] || fail "the folder of a run at work was cleared"
+
+# --------------------------------------------------- names that would write one thing over another
+names() { # FORMATS NAME...: a recipe of albedo tables of these names
+    local formats=$1 first=1
+    shift
+    echo "{\"name\": \"names\", \"formats\": [$formats], \"points\": 100, \"tables\": ["
+    for name in "$@"; do
+        [ "$first" = 1 ] || echo ","
+        first=0
+        echo "{\"table\": \"albedo\", \"name\": \"$name\", \"axes\": {\"mu\": \"0:1:4\", \"alpha\": \"0:1:4\"}, \"tolerance\": 1e-2}"
+    done
+    echo "]}"
+}
+refuse_names() { # LINE PATTERN FORMATS NAME...
+    local line=$1 pattern=$2 code=0
+    shift 2
+    names "$@" >names.json
+    "$lacquer" pack names.json -o names >/dev/null 2>message.txt || code=$?
+    [ "$code" = 1 ] && [ "$(wc -l <message.txt)" = 1 ] && grep -qE "names.json:$line: .*$pattern" message.txt ||
+        fail "names $*: exit $code, $(cat message.txt)"
+    [ ! -e names ] || fail "names $* made a folder"
+}
+for helper in texel filter clamp clamp01 cosine critical Clamp; do
+    refuse_names 2 "which every pack has too" '"c"' $helper
+done
+refuse_names 4 "lacquer_.*'a_b', which a-b has too" '"ktx2"' a-b a_b
+refuse_names 4 "'a_texels', which a has too" '"ktx2"' a a_texels
+refuse_names 4 "the file .*, which a has too" '"ktx2"' a A
+refuse_names 2 "the file 'decode.h', which every pack has" '"c"' decode
+refuse_names 4 "the file 'a.zstd.ktx2', which a has" '"ktx2", "ktx2-zstd"' a a.zstd
+for name in .hidden -o _a a--b a_; do refuse_names 2 "makes no identifier" '"ktx2"' "$name"; done
+
+# What is accepted compiles, in every language there is a compiler for.
+odd=(int main float4 2x A.b sampler2D value size table texture-1)
+names '"c", "ktx2"' "${odd[@]}" >names.json
+"$lacquer" pack names.json -o names >/dev/null || fail "odd names are refused"
+{
+    echo '#include "names/decode.h"'
+    for name in "${odd[@]}"; do echo "#include \"names/$name.h\""; done
+    echo 'int main(void) {'
+    echo '    float v[1], sum = 0.0f;'
+    for name in "${odd[@]}"; do
+        id=${name//[-.]/_}
+        echo "    lacquer_$id(lacquer_${id}_texels, 0.5f, 0.5f, v), sum += v[0];"
+    done
+    echo '    return sum > 5.0f && sum < 10.0f ? 0 : 1;'
+    echo '}'
+} >names.c
+"${CC:-cc}" -std=c99 -Wall -Wextra -Werror -o names_c names.c -lm && ./names_c || fail "the C source of odd names"
+if command -v glslangValidator >/dev/null; then
+    {
+        printf '#version 450\nlayout(location = 0) out vec4 color;\nlayout(binding = 0) uniform sampler2D t;\n'
+        cat names/decode.glsl
+        echo 'void main() { float sum = 0.0;'
+        for name in "${odd[@]}"; do echo "sum += lacquer_${name//[-.]/_}(t, 0.5, 0.5);"; done
+        echo 'color = vec4(sum); }'
+    } >names.frag
+    glslangValidator names.frag >message.txt || fail "the GLSL source of odd names: $(cat message.txt)"
+fi
