@@ -1,11 +1,14 @@
 /* cache.c - a folder of EXR archives named by the hash of their key. */
+#define _GNU_SOURCE /* O_NOFOLLOW */
 #include "pack/cache.h"
 
 #include "pca/factors.h"
+#include "pca/factors_json.h"
 #include "system/status.h"
 
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <stdint.h>
@@ -13,8 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-static const char key_fact[] = "cache-key";
+static const char key_fact[] = "cache-key", sum_fact[] = "cache-sum";
 
 /* FNV-1a, 64 bits. Collisions are harmless: the key itself is compared. */
 static uint64_t hash(uint64_t seed, const void *bytes, size_t size) {
@@ -34,16 +38,7 @@ bool lq_cache_default(char *folder, size_t size) {
     return home && home[0] == '/' && snprintf(folder, size, "%s/.cache/lacquer", home) < (int)size;
 }
 
-lq_table *lq_cache_find(const char *folder, const char *key) {
-    char path[PATH_MAX];
-    lq_table *table = NULL;
-    name_file(path, sizeof path, folder, key);
-    if (lq_table_read_exr(&table, path, NULL) != LQ_OK) return NULL;
-    const char *of = lq_table_fact(table, key_fact);
-    if (of && strcmp(of, key) == 0) return table;
-    lq_table_free(table);
-    return NULL;
-}
+/* -------------------------------------------------------------------------------------- the folder */
 
 /* Like mkdir -p. */
 static bool make_folders(const char *folder) {
@@ -55,40 +50,173 @@ static bool make_folders(const char *folder) {
         if (mkdir(path, 0777) != 0 && errno != EEXIST) return false;
         *c = '/';
     }
-    return mkdir(path, 0777) == 0 || errno == EEXIST;
+    return mkdir(path, 0700) == 0 || errno == EEXIST;
+}
+
+lq_status lq_cache_check(const char *folder, lq_error *error) {
+    struct stat there;
+    if (stat(folder, &there) != 0) return LQ_OK;
+    if (!S_ISDIR(there.st_mode)) return lq_fail(error, LQ_IO, "the cache %s is no folder", folder);
+    if (there.st_uid == geteuid() || (there.st_mode & S_ISVTX)) return LQ_OK;
+    return lq_fail(
+        error, LQ_IO,
+        "the cache %s belongs to another user, who could change its entries; accepted: a folder of your "
+        "own",
+        folder);
+}
+
+/* An entry of the user's own, opened without following a link or waiting for a pipe, under a name that stays
+ * this file's. */
+static int open_entry(char *name, size_t size, const char *folder, const char *key) {
+    char path[PATH_MAX];
+    struct stat info;
+    name_file(path, sizeof path, folder, key);
+    const int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return -1;
+    snprintf(name, size, "/proc/self/fd/%d", file);
+    if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid()) return file;
+    close(file);
+    return -1;
+}
+
+/* ------------------------------------------------------------------------------------- checksums */
+
+static uint64_t add_text(uint64_t sum, const char *text) {
+    return hash(sum, text, strlen(text) + 1);
+}
+
+static uint64_t add_facts(uint64_t sum, const lq_fact *facts, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (strncmp(facts[i].key, "cache-", 6) != 0)
+            sum = add_text(add_text(sum, facts[i].key), facts[i].value);
+    return sum;
+}
+
+static uint64_t table_sum(const lq_table *table, const char *key) {
+    uint64_t sum = add_facts(add_text(basis, key), table->facts, table->fact_count);
+    for (int a = 0; a < table->axis_count; a++) {
+        sum = add_text(sum, table->axes[a].name);
+        sum = hash(sum, table->axes[a].nodes, table->axes[a].size * sizeof *table->axes[a].nodes);
+    }
+    for (int c = 0; c < table->channel_count; c++) {
+        sum = add_text(sum, table->channel_names[c]);
+        sum = hash(sum, table->channels[c], lq_table_entries(table) * sizeof *table->channels[c]);
+    }
+    return sum;
+}
+
+/* 0: out of memory. */
+static uint64_t factored_sum(const lq_factored *factored, const char *key) {
+    uint64_t sum = add_facts(add_text(basis, key), factored->facts, factored->fact_count);
+    char *structure = lq_factored_to_json(factored);
+    if (!structure) return 0;
+    sum = add_text(sum, structure);
+    free(structure);
+    for (int p = 0; p < factored->piece_count; p++)
+        for (int f = 0; f < factored->pieces[p].factor_count; f++) {
+            const lq_factor *factor = &factored->pieces[p].factors[f];
+            sum =
+                hash(sum, factor->data, factor->base_count * lq_factor_texels(factor) * sizeof *factor->data);
+        }
+    return sum;
+}
+
+static void print_sum(char *text, size_t size, uint64_t sum) {
+    snprintf(text, size, "%016" PRIx64, sum);
+}
+
+static bool is_entry(const char *of, const char *key, const char *stated, uint64_t sum) {
+    char text[32];
+    print_sum(text, sizeof text, sum);
+    return of && stated && strcmp(of, key) == 0 && strcmp(stated, text) == 0;
+}
+
+/* --------------------------------------------------------------------------------------- entries */
+
+static bool has_axes(const lq_table *table, const lq_axis *axes, int axis_count) {
+    if (table->axis_count != axis_count) return false;
+    for (int a = 0; a < axis_count; a++)
+        if (strcmp(table->axes[a].name, axes[a].name) != 0 || table->axes[a].size != axes[a].size ||
+            memcmp(table->axes[a].nodes, axes[a].nodes, axes[a].size * sizeof *axes[a].nodes) != 0)
+            return false;
+    return true;
+}
+
+lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes, int axis_count) {
+    char name[64];
+    lq_table *table = NULL;
+    const int file = open_entry(name, sizeof name, folder, key);
+    if (file < 0) return NULL;
+    const lq_status status = lq_table_read_exr(&table, name, NULL);
+    close(file);
+    if (status != LQ_OK) return NULL;
+    if (is_entry(lq_table_fact(table, key_fact), key, lq_table_fact(table, sum_fact),
+                 table_sum(table, key)) &&
+        (!axes || has_axes(table, axes, axis_count)))
+        return table;
+    lq_table_free(table);
+    return NULL;
 }
 
 lq_factored *lq_cache_find_factored(const char *folder, const char *key) {
-    char path[PATH_MAX];
+    char name[64];
     lq_factored *factored = NULL;
-    name_file(path, sizeof path, folder, key);
-    if (lq_factored_read(&factored, path, NULL) != LQ_OK) return NULL;
-    const char *of = lq_factored_fact(factored, key_fact);
-    if (of && strcmp(of, key) == 0) return factored;
+    const int file = open_entry(name, sizeof name, folder, key);
+    if (file < 0) return NULL;
+    const lq_status status = lq_factored_read(&factored, name, NULL);
+    close(file);
+    if (status != LQ_OK) return NULL;
+    const char *of = lq_factored_fact(factored, key_fact), *stated = lq_factored_fact(factored, sum_fact);
+    if (is_entry(of, key, stated, factored_sum(factored, key))) return factored;
     lq_factored_free(factored);
     return NULL;
 }
 
-/* Where the entry for `key` goes; its folder is there then. */
-static lq_status place(char *path, size_t size, const char *folder, const char *key, lq_error *error) {
-    name_file(path, size, folder, key);
-    if (make_folders(folder)) return LQ_OK;
-    return lq_fail(error, LQ_IO, "cache %s: %s; name another with --cache", folder, strerror(errno));
+/* A folder of the user's own inside the cache, whose files are then renamed to their place: that replaces a
+ * link where writing would follow it. */
+static lq_status open_place(char *inner, size_t size, const char *folder, lq_error *error) {
+    lq_status status = make_folders(folder)
+                           ? lq_cache_check(folder, error)
+                           : lq_fail(error, LQ_IO, "the cache %s cannot be made: %m", folder);
+    if (status != LQ_OK) return status;
+    snprintf(inner, size, "%s/new-XXXXXX", folder);
+    return mkdtemp(inner) ? LQ_OK : lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", folder);
+}
+
+static lq_status close_place(const char *inner, const char *written, lq_status status, const char *folder,
+                             const char *key, lq_error *error) {
+    char path[PATH_MAX];
+    name_file(path, sizeof path, folder, key);
+    if (status == LQ_OK && rename(written, path) != 0)
+        status = lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", folder);
+    unlink(written);
+    rmdir(inner);
+    return status;
 }
 
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error) {
-    char path[PATH_MAX];
-    lq_status status = place(path, sizeof path, folder, key, error);
-    if (status == LQ_OK) status = lq_table_set_fact(table, key_fact, key, error);
-    return status == LQ_OK ? lq_table_write_exr(table, path, error) : status;
+    char inner[PATH_MAX], written[PATH_MAX + 8], sum[32];
+    lq_status status = open_place(inner, sizeof inner, folder, error);
+    if (status != LQ_OK) return status;
+    snprintf(written, sizeof written, "%s/exr", inner);
+    print_sum(sum, sizeof sum, table_sum(table, key));
+    status = lq_table_set_fact(table, key_fact, key, error);
+    if (status == LQ_OK) status = lq_table_set_fact(table, sum_fact, sum, error);
+    if (status == LQ_OK) status = lq_table_write_exr(table, written, error);
+    return close_place(inner, written, status, folder, key, error);
 }
 
 lq_status lq_cache_store_factored(const char *folder, const char *key, lq_factored *factored,
                                   lq_error *error) {
-    char path[PATH_MAX];
-    lq_status status = place(path, sizeof path, folder, key, error);
-    if (status == LQ_OK) status = lq_factored_set_fact(factored, key_fact, key, error);
-    return status == LQ_OK ? lq_factored_write(factored, path, error) : status;
+    char inner[PATH_MAX], written[PATH_MAX + 8], sum[32];
+    lq_status status = open_place(inner, sizeof inner, folder, error);
+    if (status != LQ_OK) return status;
+    snprintf(written, sizeof written, "%s/exr", inner);
+    print_sum(sum, sizeof sum, factored_sum(factored, key));
+    status = lq_factored_set_fact(factored, key_fact, key, error);
+    if (status == LQ_OK) status = lq_factored_set_fact(factored, sum_fact, sum, error);
+    if (status == LQ_OK) status = lq_factored_write(factored, written, error);
+    return close_place(inner, written, status, folder, key, error);
 }
 
 const char *lq_cache_build(char *text, size_t size) {

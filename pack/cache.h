@@ -7,11 +7,16 @@
 /* The folder to use when none is named: lacquer in XDG_CACHE_HOME or ~/.cache. False: neither is set. */
 bool lq_cache_default(char *folder, size_t size);
 
-/* The table stored for `key`, or NULL. A file that is damaged or belongs to another key is no table. */
-lq_table *lq_cache_find(const char *folder, const char *key);
+/* Whether the entries of `folder` are safe from other users: it is absent, the user's own, or sticky. LQ_IO
+ * names it. */
+lq_status lq_cache_check(const char *folder, lq_error *error);
 
-/* Store it; it gets the fact "cache-key". Two runs may do so at once: each file appears whole, and both write
- * the same. The folder is made where it is missing. */
+/* The table stored for `key`, or NULL. A file that is a link, not a file of the user's own, damaged, of
+ * another key or, where `axes` are given, over others than these is no table. */
+lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes, int axis_count);
+
+/* Store it; it gets the facts "cache-key" and "cache-sum". Two runs may do so at once: each file appears
+ * whole, and both write the same. The folder is made where it is missing. LQ_IO: it cannot be written. */
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error);
 
 /* The same for factors. */

@@ -147,3 +147,36 @@ if command -v glslangValidator >/dev/null; then
     } >names.frag
     glslangValidator names.frag >message.txt || fail "the GLSL source of odd names: $(cat message.txt)"
 fi
+
+# --------------------------------------------------- the cache: links, pipes, entries that are not what was asked
+cache=$PWD/store
+"$lacquer" pack small.json -o cached --cache "$cache" >/dev/null
+entry=$(find "$cache" -name '*.exr' | head -1)
+[ "$(find "$cache" -type f | wc -l)" = "$(find "$cache" | tail -n +2 | wc -l)" ] || fail "more than files in the cache"
+for entry in "$cache"/*.exr; do
+    cp "$entry" entry.exr
+    echo precious >victim
+    ln -sf "$PWD/victim" "$entry" # planted: writing must not follow it
+    "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null && diff -r good cached || fail "a planted link"
+    [ "$(cat victim)" = precious ] && [ ! -L "$entry" ] || fail "the target of a planted link was overwritten"
+    rm "$entry" && mkfifo "$entry"
+    timeout 20 "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null || fail "a pipe in the cache hangs it"
+    cmp entry.exr "$entry" || fail "the entry is not computed again"
+done
+# An entry of the right key with other values: text of the EXR header is kept, one byte of the data changed.
+for entry in "$cache"/*.exr; do
+    size=$(stat -c %s "$entry")
+    for at in $((size - 20)) $((size / 2)); do
+        printf '\x55' | dd of="$entry" bs=1 seek="$at" conv=notrunc 2>/dev/null
+        "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null && diff -r good cached || fail "a changed entry"
+    done
+done
+if [ "$(id -u)" = 0 ]; then
+    mkdir others && chown 12345 others
+    code=0
+    "$lacquer" pack small.json -o cached --cache others >/dev/null 2>message.txt || code=$?
+    [ "$code" = 1 ] && grep -q 'belongs to another user' message.txt || fail "another's cache: $code, $(cat message.txt)"
+fi
+"$lacquer" pack small.json -o cached --cache /proc/none >/dev/null 2>message.txt && diff -r good cached ||
+    fail "an unwritable cache fails the pack: $(cat message.txt)"
+[ "$(wc -l <message.txt)" = 1 ] && grep -q 'going on without' message.txt || fail "unwritable cache: $(cat message.txt)"

@@ -3,6 +3,7 @@
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/measure.h"
+#include "program/message.h"
 #include "program/pack/pack.h"
 #include "program/progress.h"
 
@@ -13,7 +14,7 @@
 /* ------------------------------------------------------------------------- tables and their checks */
 
 /* All that determines a table: the program, the kind, the settings and every node. NULL: out of memory. */
-static char *write_key(const pack_request *r, const lq_recipe_table *t, const char *what) {
+static char *write_key(pack_request *r, const lq_recipe_table *t, const char *what) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -59,8 +60,16 @@ static lq_status compute(const lq_recipe_table *t, const want *w, const lq_setti
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
 }
 
+/* A cache that cannot be written costs time, not the pack: said once. */
+static lq_status go_without(pack_request *r, lq_status status, const lq_error *error) {
+    if (status != LQ_IO) return status;
+    cli_message("%s; going on without", error->text);
+    *r->cache = '\0';
+    return LQ_OK;
+}
+
 /* From the cache, or computed and put there. */
-static lq_status obtain(const pack_request *r, const lq_recipe_table *t, const want *w, lq_table **table,
+static lq_status obtain(pack_request *r, const lq_recipe_table *t, const want *w, lq_table **table,
                         lq_error *error) {
     char what[64];
     if (!w->points) snprintf(what, sizeof what, "table");
@@ -71,10 +80,11 @@ static lq_status obtain(const pack_request *r, const lq_recipe_table *t, const w
     lq_settings settings = t->settings;
     settings.threads = (int)r->threads;
     lq_status status = LQ_OK;
-    *table = lq_cache_find(r->cache, key);
+    *table = *r->cache ? lq_cache_find(r->cache, key, w->points ? NULL : t->axes, t->kind->axis_count) : NULL;
     if (!*table) {
         status = compute(t, w, &settings, table, error);
-        if (status == LQ_OK) status = lq_cache_store(r->cache, key, *table, error);
+        if (status == LQ_OK && *r->cache)
+            status = go_without(r, lq_cache_store(r->cache, key, *table, error), error);
     }
     free(key);
     return status;
@@ -93,7 +103,7 @@ static lq_status search_values(void *user, const double *min, const double *max,
     return lq_nodes_within(user, min, max, values, error);
 }
 
-static lq_status factor(const pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status factor(pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const bool searches = t->pca_budget > 0.0 || t->pca_bytes > 0;
     const want search = {"search", t->points, SEARCH_SEED};
@@ -119,7 +129,7 @@ static lq_status factor(const pack_request *r, lq_packed *packed, lq_error *erro
 }
 
 /* The factors, and the table where they or a binary need it. */
-static lq_status obtain_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0};
     char what[LQ_PCA_TEXT + 64];
@@ -129,11 +139,12 @@ static lq_status obtain_factors(const pack_request *r, lq_packed *packed, lq_err
     char *key = write_key(r, t, what);
     if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
     for (int l = 0; l < LQ_LAYOUTS; l++) binary = binary || t->layouts[l];
-    packed->factored = lq_cache_find_factored(r->cache, key);
+    packed->factored = *r->cache ? lq_cache_find_factored(r->cache, key) : NULL;
     if (!packed->factored || binary) status = obtain(r, t, &whole, &packed->table, error);
     if (status == LQ_OK && !packed->factored) {
         status = factor(r, packed, error);
-        if (status == LQ_OK) status = lq_cache_store_factored(r->cache, key, packed->factored, error);
+        if (status == LQ_OK && *r->cache)
+            status = go_without(r, lq_cache_store_factored(r->cache, key, packed->factored, error), error);
     }
     free(key);
     return status;
@@ -141,7 +152,7 @@ static lq_status obtain_factors(const pack_request *r, lq_packed *packed, lq_err
 
 /* ------------------------------------------------------------------------------------------ a table */
 
-static lq_status make_texture(const pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status make_texture(pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0}, check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
@@ -155,7 +166,7 @@ static lq_status make_texture(const pack_request *r, lq_packed *packed, lq_error
     return status;
 }
 
-static lq_status make_factors(const pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status make_factors(pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
@@ -169,6 +180,6 @@ static lq_status make_factors(const pack_request *r, lq_packed *packed, lq_error
     return status;
 }
 
-lq_status pack_make(const pack_request *r, lq_packed *packed, lq_error *error) {
+lq_status pack_make(pack_request *r, lq_packed *packed, lq_error *error) {
     return packed->from->factored ? make_factors(r, packed, error) : make_texture(r, packed, error);
 }

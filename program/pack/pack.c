@@ -139,11 +139,12 @@ static int judge(const pack_request *r, const lq_recipe *recipe, const lq_packed
     return code;
 }
 
-static int pack(const pack_request *r, const lq_recipe *recipe, lq_packed *packed) {
+static int pack(pack_request *r, const lq_recipe *recipe, lq_packed *packed) {
     lq_error error = {""};
     cli_signals_hold();
     lq_status status = lq_folder_check(r->output, &error); /* before the work */
     cli_signals_release();
+    if (status == LQ_OK) status = lq_cache_check(r->cache, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     for (size_t i = 0; i < recipe->count; i++) {
         packed[i].from = &recipe->tables[i];

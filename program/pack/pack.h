@@ -9,11 +9,11 @@
 typedef struct pack_request {
     const char *recipe_path, *output, *cache_given;
     size_t threads;
-    char cache[PATH_MAX];
+    char cache[PATH_MAX]; /* empty: none */
     char build[64];
 } pack_request;
 
 /* The table of packed->from: computed or found in the cache, made into textures, measured. */
-lq_status pack_make(const pack_request *request, lq_packed *packed, lq_error *error);
+lq_status pack_make(pack_request *request, lq_packed *packed, lq_error *error);
 
 #endif
