@@ -104,51 +104,51 @@ static int print_json(const char *path, const lq_table *table) {
  * ====================================================================================== */
 
 enum { OPTION_FORMAT = 256, OPTION_LAYOUT, OPTION_KIND, OPTION_NDF };
+enum { OWN = 1, PUBLISHED = 2 }; /* modes: a file of this program, or a published one */
 
 typedef struct info_request {
     const char *path, *kind, *ndf;
     int format, layout; /* layout -1: a file of this program */
 } info_request;
 
+static const char *const formats[] = {"text", "json", NULL};
+
+static bool read_layout(void *field, const char *value) {
+    const char *layouts[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
+    const int choice = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS);
+    if (choice >= 0) *(int *)field = choice;
+    return choice >= 0;
+}
+
 static const cli_option options[] = {
-    {OPTION_FORMAT, "format", "text|json", "how to print (default text)"},
-    {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table"},
-    {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
-    {OPTION_NDF, "ndf", "NDF", "which NDF it was made for, where it is not the one of the layout"},
+    {OPTION_FORMAT, "format", "text|json", "how to print (default text)",
+     CLI_CHOICE(info_request, format, formats)},
+    {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table",
+     CLI_READ(info_request, layout, read_layout)},
+    {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself",
+     CLI_TEXT(info_request, kind), .modes = PUBLISHED},
+    {OPTION_NDF, "ndf", "NDF", "which NDF it was made for, where it is not the one of the layout",
+     CLI_TEXT(info_request, ndf), .modes = PUBLISHED},
     {0},
 };
 
-static bool take_option(info_request *request, int id, const char *value) {
-    static const char *const formats[] = {"text", "json"};
-    const char *layouts[LQ_LAYOUTS];
-    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
-    if (id == OPTION_FORMAT) return (request->format = cli_parse_choice("--format", value, formats, 2)) >= 0;
-    if (id == OPTION_LAYOUT)
-        return (request->layout = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS)) >= 0;
-    if (id == OPTION_KIND) {
-        request->kind = value;
-        return true;
-    }
-    if (id == OPTION_NDF) {
-        request->ndf = value;
-        return true;
-    }
-    if (request->path) cli_message("unexpected '%s'; info takes one FILE", value);
-    else request->path = value;
-    return request->path == value;
+static bool take_word(void *user, const char *word) {
+    info_request *request = user;
+    if (request->path) cli_message("unexpected '%s'; info takes one FILE", word);
+    else request->path = word;
+    return request->path == word;
 }
 
 static bool read_arguments(info_request *request, int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_info, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take_option(request, id, args.value)) return false;
+    cli_given given;
+    if (!cli_parse(&cli_verb_info, argc, argv, request, take_word, &given)) return false;
     if (!request->path) cli_message("no file; usage: lacquer info %s", cli_verb_info.usage);
     else if (request->layout >= 0 && !request->kind)
         cli_message("--layout needs --kind: a published file does not say which table it holds");
-    else if (request->layout < 0 && request->kind) cli_message("--kind needs --layout");
-    else if (request->layout < 0 && request->ndf)
-        cli_message("--ndf needs --layout: other files say themselves which they are of");
-    else return true;
+    else
+        return request->layout >= 0 ? cli_suits(&given, PUBLISHED, "with --layout")
+                                    : cli_suits(&given, OWN, "without --layout");
     return false;
 }
 
@@ -177,6 +177,7 @@ const cli_verb cli_verb_info = {
     .summary = "axes, channels and provenance of a stored table",
     .usage = "FILE [--format text|json] [--layout LAYOUT --kind TABLE]",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .examples = "lacquer info fgd.exr\n"
                 "lacquer info --format json fgd.exr\n"
                 "lacquer info TIR.bin --layout belcour --kind tir-pass",

@@ -28,11 +28,8 @@ static void print_formats(void) {
 }
 
 static int run(int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_list, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
-        if (id == CLI_BAD) return CLI_FAILED;
-        return cli_fail("unexpected '%s'; list takes no arguments", args.value);
-    }
+    cli_given given;
+    if (!cli_parse(&cli_verb_list, argc, argv, NULL, NULL, &given)) return CLI_FAILED;
     cli_print_tables(stdout);
     printf("\n");
     print_ndfs();
@@ -48,6 +45,7 @@ const cli_verb cli_verb_list = {
     .summary = "tables, NDFs and file formats, one line each",
     .usage = "",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .examples = "lacquer list",
     .run = run,
 };

@@ -1,11 +1,12 @@
-/* options.c - walks the arguments of a verb through getopt_long and reports every mistake in one line. */
+/* options.c - walks the arguments of a verb, fills its request by its rows, and reports every mistake in one
+ * line. */
 #include "program/options.h"
 
 #include "program/message.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,19 +20,30 @@ void cli_join(char *list, size_t size, const char *word) {
  * ====================================================================================== */
 
 static bool is_letter(int id) {
-    return id > CLI_WORD && id < 256;
+    return id > ' ' && id < 256;
 }
 
-cli_args cli_args_begin(const cli_verb *verb, int argc, char **argv) {
-    optind = 0; /* glibc: start afresh */
-    opterr = 0;
-    return (cli_args){.verb = verb, .argc = argc, .argv = argv};
+/* The row called so, by its name or its letter; NULL: there is none. */
+static const cli_option *find_name(const cli_verb *verb, const char *name, size_t length) {
+    for (size_t i = 0; i < verb->option_count; i++)
+        if (strlen(verb->options[i].name) == length && strncmp(verb->options[i].name, name, length) == 0)
+            return &verb->options[i];
+    return NULL;
 }
 
-static void accepted_options(const cli_verb *verb, char *list, size_t size) {
+static const cli_option *find_id(const cli_verb *verb, int id) {
+    for (size_t i = 0; i < verb->option_count; i++)
+        if (verb->options[i].id == id) return &verb->options[i];
+    return NULL;
+}
+
+/* The options that mean something in a mode (0: any). */
+static void accepted_options(const cli_verb *verb, unsigned mode, char *list, size_t size) {
     list[0] = '\0';
-    for (const cli_option *option = verb->options; option->name; option++) {
+    for (size_t i = 0; i < verb->option_count; i++) {
+        const cli_option *option = &verb->options[i];
         char text[64] = "";
+        if (mode && option->modes && !(option->modes & mode)) continue;
         if (is_letter(option->id)) snprintf(text, sizeof text, "-%c/", option->id);
         snprintf(text + strlen(text), sizeof text - strlen(text), "--%s", option->name);
         cli_join(list, size, text);
@@ -39,75 +51,171 @@ static void accepted_options(const cli_verb *verb, char *list, size_t size) {
     cli_join(list, size, "--help");
 }
 
-static int unknown_option(const cli_args *args, const char *text) {
+static bool refuse_unknown(const cli_verb *verb, const char *text) {
     char list[LQ_MESSAGE_SIZE];
-    accepted_options(args->verb, list, sizeof list);
+    accepted_options(verb, 0, list, sizeof list);
     cli_message("unknown option '%s'; accepted: %s", text, list);
-    return CLI_BAD;
+    return false;
 }
 
-static const cli_option *option_of(const cli_verb *verb, int id) {
-    for (const cli_option *option = verb->options; option->name; option++)
-        if (option->id == id) return option;
-    return NULL;
+/* ---------------------------------------------------------------------- one option into its field */
+
+static bool take_count(const cli_option *option, const char *what, const char *value, size_t *field) {
+    const size_t highest = option->highest < (double)SIZE_MAX ? (size_t)option->highest : SIZE_MAX;
+    return cli_parse_count(what, value, (size_t)option->lowest, highest, field);
 }
 
-/* The tables getopt_long wants. "-:" gives words in order, as CLI_WORD, and ':' for a missing value. */
-static void getopt_tables(const cli_verb *verb, char *letters, struct option *names) {
-    memcpy(letters, "-:", 3);
-    letters += 2;
-    for (const cli_option *option = verb->options; option->name; option++) {
-        *names++ =
-            (struct option){option->name, option->value ? required_argument : no_argument, NULL, option->id};
-        if (!is_letter(option->id)) continue;
-        *letters++ = (char)option->id;
-        if (option->value) *letters++ = ':';
+static bool take_choice(const cli_option *option, const char *what, const char *value, int *field) {
+    size_t count = 0;
+    while (option->choices[count]) count++;
+    const int choice = cli_parse_choice(what, value, option->choices, count);
+    if (choice >= 0) *field = choice;
+    return choice >= 0;
+}
+
+static bool take_listed(const char *what, const char *value, cli_texts *list) {
+    if (list->count == CLI_LIST_SIZE) {
+        cli_message("%s: too many at '%s'; accepted are %d", what, value, (int)CLI_LIST_SIZE);
+        return false;
     }
-    *letters = '\0';
-    *names = (struct option){0};
+    list->text[list->count++] = value;
+    return true;
 }
 
-/* getopt_long accepts abbreviations; scripts that use one would break when an option is added. */
-static bool is_abbreviation(const char *text, const cli_option *option) {
-    return strncmp(text, "--", 2) == 0 && strcspn(text + 2, "=") != strlen(option->name);
+static bool take_option(const cli_option *option, void *request, const char *value) {
+    void *field = (char *)request + option->at;
+    char what[64];
+    snprintf(what, sizeof what, "--%s", option->name);
+    switch (option->type) {
+    case CLI_TYPE_TEXT:
+        *(const char **)field = value;
+        return true;
+    case CLI_TYPE_FLAG:
+        return *(bool *)field = true;
+    case CLI_TYPE_NUMBER:
+        return cli_parse_number(what, value, option->lowest, option->highest, field);
+    case CLI_TYPE_COUNT:
+        return take_count(option, what, value, field);
+    case CLI_TYPE_CHOICE:
+        return take_choice(option, what, value, field);
+    case CLI_TYPE_LIST:
+        return take_listed(what, value, field);
+    case CLI_TYPE_READ:
+        return option->read(field, value);
+    }
+    return false;
 }
 
-/* What getopt_long refused, as the user wrote it: a long option whole, one letter of a group alone. */
-static int refused_option(const cli_args *args, const char *text) {
-    char letter[3] = {'-', (char)optopt, '\0'};
-    const cli_option *option = optopt ? option_of(args->verb, optopt) : NULL;
-    if (option && strchr(text, '=')) {
+/* --------------------------------------------------------------------------- walking the arguments */
+
+typedef struct walk {
+    const cli_verb *verb;
+    char **argv;
+    int argc, at;
+    void *request;
+    bool (*word)(void *request, const char *word);
+    cli_given *given;
+} walk;
+
+/* An option and the value glued to it, or NULL. */
+static bool take(walk *w, const cli_option *option, const char *glued) {
+    const char *value = option->value ? glued ? glued : w->at < w->argc ? w->argv[w->at++] : NULL : "";
+    if (!value) {
+        cli_message("option --%s needs a value: %s", option->name, option->value);
+        return false;
+    }
+    w->given->text[option - w->verb->options] = value;
+    return take_option(option, w->request, value);
+}
+
+/* "--name" or "--name=value"; the whole name, as scripts that use a part of one would break when an option
+ * is added. */
+static bool take_long(walk *w, const char *text) {
+    const size_t length = strcspn(text + 2, "=");
+    const cli_option *option = find_name(w->verb, text + 2, length);
+    const char *glued = text[2 + length] ? text + 2 + length + 1 : NULL;
+    if (!option) return refuse_unknown(w->verb, text);
+    if (!option->value && glued) {
         cli_message("option --%s takes no value", option->name);
-        return CLI_BAD;
+        return false;
     }
-    return unknown_option(args, text[1] == '-' ? text : letter);
+    return take(w, option, glued);
 }
 
-static int next_word(cli_args *args) {
-    if (args->rest >= args->argc) return CLI_END;
-    args->value = args->argv[args->rest++];
-    return CLI_WORD;
+/* "-o FILE", "-oFILE", and letters that take no value together. */
+static bool take_letters(walk *w, const char *letters) {
+    for (; *letters; letters++) {
+        const cli_option *option = is_letter(*letters) ? find_id(w->verb, *letters) : NULL;
+        const char name[] = {'-', *letters, '\0'};
+        if (!option) return refuse_unknown(w->verb, name);
+        if (option->value) return take(w, option, letters[1] ? letters + 1 : NULL);
+        if (!take(w, option, NULL)) return false;
+    }
+    return true;
 }
 
-int cli_args_next(cli_args *args) {
-    if (args->rest > 0) return next_word(args);
-    char letters[2 * CLI_MAX_OPTIONS + 3];
-    struct option names[CLI_MAX_OPTIONS + 1];
-    getopt_tables(args->verb, letters, names);
-    int at = optind > 0 ? optind : 1;
-    int id = getopt_long(args->argc, args->argv, letters, names, NULL);
-    args->value = optarg;
-    if (id == -1) {
-        args->rest = optind;
-        return next_word(args);
+static bool take_word(const walk *w, const char *word) {
+    if (w->word) return w->word(w->request, word);
+    cli_message("unexpected '%s'; %s takes no arguments", word, w->verb->name);
+    return false;
+}
+
+bool cli_parse(const cli_verb *verb, int argc, char **argv, void *request,
+               bool (*word)(void *request, const char *word), cli_given *given) {
+    walk w = {verb, argv, argc, 1, request, word, given};
+    bool words_only = false, good = true;
+    *given = (cli_given){.verb = verb};
+    while (good && w.at < argc) {
+        const char *text = argv[w.at++];
+        if (words_only || text[0] != '-' || text[1] == '\0') good = take_word(&w, text);
+        else if (strcmp(text, "--") == 0) words_only = true;
+        else good = text[1] == '-' ? take_long(&w, text) : take_letters(&w, text + 1);
     }
-    if (id == CLI_WORD) return CLI_WORD;
-    if (id == '?') return refused_option(args, args->argv[at]);
-    const cli_option *option = option_of(args->verb, id == ':' ? optopt : id);
-    if (is_abbreviation(args->argv[at], option)) return unknown_option(args, args->argv[at]);
-    if (id != ':') return id;
-    cli_message("option --%s needs a value: %s", option->name, option->value);
-    return CLI_BAD;
+    return good;
+}
+
+/* ---------------------------------------------------------------------------------- what was given */
+
+const char *cli_given_text(const cli_given *given, int id) {
+    const cli_option *option = find_id(given->verb, id);
+    return option ? given->text[option - given->verb->options] : NULL;
+}
+
+bool cli_suits(const cli_given *given, unsigned mode, const char *where) {
+    const cli_verb *verb = given->verb;
+    char list[LQ_MESSAGE_SIZE];
+    for (size_t i = 0; i < verb->option_count; i++) {
+        const cli_option *option = &verb->options[i];
+        if (!given->text[i] || !option->modes || (option->modes & mode)) continue;
+        accepted_options(verb, mode, list, sizeof list);
+        cli_message("--%s has no effect %s; accepted there: %s", option->name, where, list);
+        return false;
+    }
+    return true;
+}
+
+static void write_option(FILE *out, const cli_option *option, const void *request, const char *text) {
+    const cli_texts *list = (const cli_texts *)(const void *)((const char *)request + option->at);
+    if (option->type != CLI_TYPE_LIST)
+        fprintf(out, " --%s%s%s", option->name, option->value ? " " : "", text);
+    else
+        for (size_t i = 0; i < list->count; i++) fprintf(out, " --%s %s", option->name, list->text[i]);
+}
+
+char *cli_command(const cli_given *given, const void *request, const char *words) {
+    const cli_verb *verb = given->verb;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    fprintf(out, "lacquer %s %s", verb->name, words);
+    for (size_t i = 0; i < verb->option_count; i++)
+        if (given->text[i] && !verb->options[i].silent)
+            write_option(out, &verb->options[i], request, given->text[i]);
+    const bool whole = !ferror(out);
+    if (fclose(out) == 0 && whole) return text;
+    free(text);
+    return NULL;
 }
 
 /* ======================================================================================
@@ -179,8 +287,8 @@ void cli_print_help(const cli_verb *verb) {
     printf("lacquer %s: %s\n\nUsage:\n", verb->name, verb->summary);
     print_lines(prefix, verb->usage);
     printf("\nOptions:\n");
-    for (const cli_option *option = verb->options; option->name; option++) print_option(option);
-    print_option(&(cli_option){'h', "help", NULL, "this text"});
+    for (size_t i = 0; i < verb->option_count; i++) print_option(&verb->options[i]);
+    print_option(&(cli_option){.id = 'h', .name = "help", .meaning = "this text"});
     if (verb->notes) {
         printf("\n");
         verb->notes(stdout);

@@ -1,4 +1,4 @@
-/* options.h - the arguments of a verb, one at a time, and the values of options. Everything that is
+/* options.h - the arguments of a verb, and the values of options. Everything that is
  * wrong is reported here, in one line that says what is accepted. */
 #ifndef LACQUER_PROGRAM_OPTIONS_H
 #define LACQUER_PROGRAM_OPTIONS_H
@@ -8,25 +8,27 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum {
-    CLI_END = -1, /* no more arguments */
-    CLI_BAD = -2, /* a message was printed */
-    CLI_WORD = 1  /* not an option: a table, a file, axis=value */
-};
-
-enum { CLI_MAX_OPTIONS = 24 };
-
-typedef struct cli_args {
+/* The options a command gave. */
+typedef struct cli_given {
     const cli_verb *verb;
-    int argc;
-    char **argv;
-    const char *value; /* of the argument returned last: the word, or the option's value */
-    int rest;          /* the next argument after "--", where everything is a word; 0 before that */
-} cli_args;
+    const char *text[CLI_MAX_OPTIONS]; /* by row: the value ("" of a flag), NULL where it was not given */
+} cli_given;
 
-cli_args cli_args_begin(const cli_verb *verb, int argc, char **argv);
-/* The id of the next option, CLI_WORD, CLI_END or CLI_BAD. */
-int cli_args_next(cli_args *args);
+/* Fill `request` from the arguments: options by the rows of the verb, words through `word` (NULL: the verb
+ * takes none). False: a line was printed. */
+bool cli_parse(const cli_verb *verb, int argc, char **argv, void *request,
+               bool (*word)(void *request, const char *word), cli_given *given);
+
+/* What was given of an option of this verb, or NULL. */
+const char *cli_given_text(const cli_given *given, int id);
+
+/* Refuse, in one line, options that mean nothing in the mode a command turned out to ask for; `where` says it
+ * in words: "with --from". */
+bool cli_suits(const cli_given *given, unsigned mode, const char *where);
+
+/* The command line in a fixed order, without what does not change results: the same result is the same file,
+ * bit for bit. `request` is the one that was filled. Free it; NULL: out of memory. */
+char *cli_command(const cli_given *given, const void *request, const char *words);
 
 /* A finite number, the whole text and nothing else; prints nothing. */
 bool cli_number(const char *text, double *value);

@@ -5,15 +5,18 @@
  *     const cli_verb cli_verb_NAME = {"NAME", "one line", "FILE [options]", options, notes, examples, run};
  *
  * declared below and listed in program/verbs.c. `run` gets argv[0] = the verb's name and returns an exit
- * code of cli_exit. --help is handled before it is called, from the same fields. Inside, the pattern is
+ * code of cli_exit. --help is handled before it is called, from the same fields. An option is a row that says
+ * what its value may be, which field of the verb's request it fills, and in which modes it means anything:
  *
- *     cli_args args = cli_args_begin(&cli_verb_NAME, argc, argv);
- *     for (int id; (id = cli_args_next(&args)) != CLI_END;) {
- *         if (id == CLI_BAD) return CLI_FAILED;              // its line is already printed
- *         if (id == CLI_WORD) ... args.value                 // an argument that is no option
- *         if (id == OPTION_SAMPLES && !cli_parse_count("--samples", args.value, 1, 1000000000, &samples))
- *             return CLI_FAILED;
- *     }
+ *     static const cli_option options[] = {
+ *         {'o', "output", "FILE", "where to write", CLI_TEXT(my_request, output), .silent = true},
+ *         {SAMPLES, "samples", "N", "walks", CLI_COUNT(my_request, samples, 1, 1000000), .modes = WALKS},
+ *         CLI_SETTINGS_OPTIONS(my_request, 0), {0}};
+ *     ...
+ *     my_request request = {...defaults...};
+ *     cli_given given;
+ *     if (!cli_parse(&cli_verb_NAME, argc, argv, &request, take_word, &given)) return CLI_FAILED;
+ *     if (!cli_suits(&given, WALKS, "for a walk")) return CLI_FAILED;   // once the mode is known
  *
  * What else a verb uses: program/message.h (every line on stderr), program/options.h (numbers, choices),
  * program/settings.h (--ndf, --scattering, --masking, --tolerance, --threads), program/progress.h (the bar,
@@ -23,6 +26,8 @@
 #ifndef LACQUER_PROGRAM_VERB_H
 #define LACQUER_PROGRAM_VERB_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 /* Exit codes of the program. */
@@ -33,6 +38,24 @@ typedef enum cli_exit {
     CLI_INTERRUPTED = 130 /* stopped by SIGINT or SIGTERM; nothing was left behind */
 } cli_exit;
 
+/* What the value of an option is, and the type of the field it fills. */
+typedef enum cli_type {
+    CLI_TYPE_TEXT,   /* const char * */
+    CLI_TYPE_FLAG,   /* bool; takes no value */
+    CLI_TYPE_NUMBER, /* double */
+    CLI_TYPE_COUNT,  /* size_t */
+    CLI_TYPE_CHOICE, /* int, or an enumeration: the index in `choices` */
+    CLI_TYPE_LIST,   /* cli_texts; the option may be repeated */
+    CLI_TYPE_READ    /* anything, by `read` */
+} cli_type;
+
+enum { CLI_LIST_SIZE = 16, CLI_MAX_OPTIONS = 48 };
+
+typedef struct cli_texts {
+    size_t count;
+    const char *text[CLI_LIST_SIZE];
+} cli_texts;
+
 /* One option of a verb. `id` is its letter where it has a short form, otherwise any number from 256;
  * 512 and above are taken by program/settings.h. */
 typedef struct cli_option {
@@ -40,17 +63,47 @@ typedef struct cli_option {
     const char *name;    /* without the dashes; NULL ends a list */
     const char *value;   /* what its value is called in help, "FILE"; NULL: it takes none */
     const char *meaning; /* one line, with the default */
+    cli_type type;
+    size_t at;                                    /* of the field in the verb's request */
+    double lowest, highest;                       /* of a number or count, both accepted */
+    const char *const *choices;                   /* ends with NULL */
+    bool (*read)(void *field, const char *value); /* false: a line was printed */
+    unsigned modes;                               /* of the verb in which it means anything; 0: all */
+    bool silent; /* results do not depend on it: it is left out of the command a file records */
 } cli_option;
+
+/* The offset of a field, which must be as large as what is written there. */
+#define CLI_AT(REQUEST, field, TYPE)                                                                         \
+    (offsetof(REQUEST, field) + 0 * sizeof(char[sizeof(((REQUEST *)0)->field) == sizeof(TYPE) ? 1 : -1]))
+
+/* The rest of a row, by its type. */
+#define CLI_TEXT(REQUEST, field) .type = CLI_TYPE_TEXT, .at = CLI_AT(REQUEST, field, const char *)
+#define CLI_FLAG(REQUEST, field) .type = CLI_TYPE_FLAG, .at = CLI_AT(REQUEST, field, bool)
+#define CLI_NUMBER(REQUEST, field, low, high)                                                                \
+    .type = CLI_TYPE_NUMBER, .at = CLI_AT(REQUEST, field, double), .lowest = (low), .highest = (high)
+#define CLI_COUNT(REQUEST, field, low, high)                                                                 \
+    .type = CLI_TYPE_COUNT, .at = CLI_AT(REQUEST, field, size_t), .lowest = (low), .highest = (high)
+#define CLI_CHOICE(REQUEST, field, names)                                                                    \
+    .type = CLI_TYPE_CHOICE, .at = CLI_AT(REQUEST, field, int), .choices = (names)
+#define CLI_LIST(REQUEST, field) .type = CLI_TYPE_LIST, .at = CLI_AT(REQUEST, field, cli_texts)
+#define CLI_READ(REQUEST, field, function)                                                                   \
+    .type = CLI_TYPE_READ, .at = offsetof(REQUEST, field), .read = (function)
 
 typedef struct cli_verb {
     const char *name;
     const char *summary;       /* one line */
     const char *usage;         /* what follows `lacquer NAME`; one form a line */
     const cli_option *options; /* ends with {0} */
+    size_t option_count;       /* CLI_COUNTED(options) */
     void (*notes)(FILE *out);  /* more help, such as the tables of the catalogue; NULL: none */
     const char *examples;      /* worked examples, one a line */
     int (*run)(int argc, char **argv);
 } cli_verb;
+
+/* How many rows an array has before its {0}; more than a cli_given records do not compile. */
+#define CLI_COUNTED(options)                                                                                 \
+    (sizeof(options) / sizeof *(options)-1 +                                                                 \
+     0 * sizeof(char[sizeof(options) / sizeof *(options) <= CLI_MAX_OPTIONS + 1 ? 1 : -1]))
 
 extern const cli_verb cli_verb_list;
 extern const cli_verb cli_verb_eval;

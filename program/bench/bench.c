@@ -10,23 +10,33 @@
 
 enum { CSV = 256, SVG, POINTS, SEED, FULL, LONGEST, REPORT };
 
+/* Modes: one table, or the report of all. */
+enum { ONE = 1, ALL = 2 };
+
 typedef struct bench_request {
     bench_job job;
+    cli_settings settings;
+    size_t threads, samples;
     const char *report;
 } bench_request;
 
 static const cli_option options[] = {
-    {CSV, "csv", "FILE", "write the table as CSV as well"},
-    {SVG, "svg", "FILE", "write a log-log chart"},
-    {POINTS, "points", "P", "entries at which errors are measured (default 64)"},
-    {SEED, "seed", "S", "of the points and of the walks (default 1)"},
-    {LONGEST, "samples", "N", "of the longest walk, up to 1e6 (default 1000000)"},
-    {REPORT, "report", "DIR", "all tables, walks and compressions afresh, as one page: DIR/index.html"},
-    {FULL, "full", NULL, "also the default grid (fgd: 64 x 64 x 64 x 64) and tolerance 1e-7"},
-    {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)"},
-    {CLI_SCATTERING, "scattering", "single|multiple", "hits on the microsurface (default multiple)"},
-    {CLI_MASKING, "masking", "correlated|separable", "Smith masking (default correlated)"},
-    CLI_THREADS_OPTION,
+    {CSV, "csv", "FILE", "write the table as CSV as well", CLI_TEXT(bench_request, job.csv), .modes = ONE},
+    {SVG, "svg", "FILE", "write a log-log chart", CLI_TEXT(bench_request, job.svg), .modes = ONE},
+    {POINTS, "points", "P", "entries at which errors are measured (default 64)",
+     CLI_COUNT(bench_request, job.points, 2, 100000)},
+    {SEED, "seed", "S", "of the points and of the walks (default 1)",
+     CLI_COUNT(bench_request, job.seed, 0, (double)SIZE_MAX)},
+    {LONGEST, "samples", "N", "of the longest walk, up to 1e6 (default 1000000)",
+     CLI_COUNT(bench_request, samples, 1000, 1000000)},
+    {REPORT, "report", "DIR", "all tables, walks and compressions afresh, as one page: DIR/index.html",
+     CLI_TEXT(bench_request, report)},
+    {FULL, "full", NULL, "also the default grid (fgd: 64 x 64 x 64 x 64) and tolerance 1e-7",
+     CLI_FLAG(bench_request, job.full), .modes = ONE},
+    CLI_NDF_OPTION(bench_request, 0),
+    CLI_SCATTERING_OPTION(bench_request, ONE),
+    CLI_MASKING_OPTION(bench_request, ONE),
+    CLI_THREADS_OPTION(bench_request, 0),
     {0},
 };
 
@@ -46,6 +56,7 @@ const cli_verb cli_verb_bench = {
     .summary = "speed against error of the solver and of the random walk",
     .usage = "[TABLE] [options]\n[TABLE] --report DIR [--points P] [--samples N]",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer bench\n"
                 "lacquer bench fgd --full --csv bench.csv --svg bench.svg\n"
@@ -54,7 +65,8 @@ const cli_verb cli_verb_bench = {
     .run = run,
 };
 
-static bool take_table(bench_job *job, const char *id) {
+static bool take_table(void *user, const char *id) {
+    bench_job *job = &((bench_request *)user)->job;
     lq_error error = {""};
     if (job->kind) {
         cli_message("unexpected '%s'; bench takes one TABLE", id);
@@ -65,61 +77,18 @@ static bool take_table(bench_job *job, const char *id) {
     return job->kind != NULL;
 }
 
-static bool take(bench_request *request, int id, const char *value) {
-    bench_job *job = &request->job;
-    size_t samples;
-    const int taken = cli_settings_take(&job->options, id, value);
-    if (taken != 0) return taken > 0;
-    switch (id) {
-    case CSV:
-        job->csv = value;
-        return true;
-    case SVG:
-        job->svg = value;
-        return true;
-    case REPORT:
-        request->report = value;
-        return true;
-    case POINTS:
-        return cli_parse_count("--points", value, 2, 100000, &job->points);
-    case LONGEST:
-        if (!cli_parse_count("--samples", value, 1000, 1000000, &samples)) return false;
-        job->longest_walk = (double)samples;
-        return true;
-    case SEED:
-        return cli_parse_count("--seed", value, 0, SIZE_MAX, &job->seed);
-    case FULL:
-        job->full = true;
-        return true;
-    default:
-        return take_table(job, value);
-    }
-}
-
-/* A report runs tables in every way they can be made. */
-static bool suits_report(const bench_request *request) {
-    const bench_job *job = &request->job;
-    const char *given = job->options.given[CLI_SCATTERING - CLI_NDF] ? "--scattering"
-                        : job->options.given[CLI_MASKING - CLI_NDF]  ? "--masking"
-                        : job->csv                                   ? "--csv"
-                        : job->svg                                   ? "--svg"
-                        : job->full                                  ? "--full"
-                                                                     : NULL;
-    if (given)
-        cli_message("--report runs every sort of scattering and writes its own files: leave out %s", given);
-    return !given;
-}
-
 static bool parse(bench_request *request, int argc, char **argv) {
     bench_job *job = &request->job;
-    cli_args args = cli_args_begin(&cli_verb_bench, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take(request, id, args.value)) return false;
-    job->threads = job->options.settings.threads > 0 ? job->options.settings.threads : omp_get_max_threads();
+    cli_given given;
+    if (!cli_parse(&cli_verb_bench, argc, argv, request, take_table, &given)) return false;
+    job->threads = request->threads > 0 ? (int)request->threads : omp_get_max_threads();
+    job->longest_walk = (double)request->samples;
+    job->options = request->settings;
     job->options.settings.threads = job->threads;
-    if (request->report) return suits_report(request);
-    if (!job->kind && !take_table(job, "fgd")) return false;
-    if (!cli_settings_suit(&job->options, job->kind)) return false;
+    if (request->report)
+        return cli_suits(&given, ALL, "with --report, which runs every table and scattering");
+    if (!job->kind && !take_table(request, "fgd")) return false;
+    if (!cli_settings_suit(&given, job->kind)) return false;
     return (!job->csv || cli_output_check(job->csv)) && (!job->svg || cli_output_check(job->svg));
 }
 
@@ -138,7 +107,7 @@ static int report(const bench_job *job) {
 
 static int run(int argc, char **argv) {
     bench_request request = {
-        .job = {.options = cli_settings_default(), .points = 64, .seed = 1, .longest_walk = 1e6}};
+        .job = {.points = 64, .seed = 1}, .settings = cli_settings_default(), .samples = 1000000};
     bench_job *job = &request.job;
     if (!parse(&request, argc, argv)) return CLI_FAILED;
     if (request.report) return bench_report(request.report, job);

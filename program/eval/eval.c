@@ -13,31 +13,38 @@ enum { OPTION_FORMAT = 256, OPTION_FROM, OPTION_ORDERS };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 enum { MAX_WORDS = 16, MAX_ORDERS = 64 };
 
+enum { COMPUTED = 1, STORED = 2 }; /* modes */
+
 typedef struct eval_request {
     const char *words[MAX_WORDS]; /* the table, unless `from` is given, and axis=value */
     int word_count;
     cli_settings settings;
+    size_t threads;
     int format;
     const char *from;
     size_t orders;
 } eval_request;
 
+static const char *const formats[] = {"text", "csv", "json", NULL};
+
+static const cli_option options[] = {
+    CLI_SETTINGS_OPTIONS(eval_request, COMPUTED),
+    CLI_THREADS_OPTION(eval_request, COMPUTED),
+    {OPTION_ORDERS, "orders", "N", "energy after exactly 1, 2, ... N hits instead (fgd only)",
+     CLI_COUNT(eval_request, orders, 1, MAX_ORDERS), .modes = COMPUTED},
+    {OPTION_FROM, "from", "FILE", "interpolate a stored table, or factors of pca, instead of computing",
+     CLI_TEXT(eval_request, from)},
+    {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
+     CLI_CHOICE(eval_request, format, formats)},
+    {0},
+};
+
 /* ======================================================================================
  *                                       Arguments
  * ====================================================================================== */
 
-static bool take_option(eval_request *request, int id, const char *value) {
-    static const char *const formats[] = {"text", "csv", "json"};
-    int taken = cli_settings_take(&request->settings, id, value);
-    if (taken != 0) return taken > 0;
-    if (id == OPTION_FROM) request->from = value;
-    if (id == OPTION_ORDERS) return cli_parse_count("--orders", value, 1, MAX_ORDERS, &request->orders);
-    if (id != OPTION_FORMAT) return true;
-    request->format = cli_parse_choice("--format", value, formats, 3);
-    return request->format >= 0;
-}
-
-static bool take_word(eval_request *request, const char *word) {
+static bool take_word(void *user, const char *word) {
+    eval_request *request = user;
     if (request->word_count == MAX_WORDS) {
         cli_message("too many arguments at '%s'", word);
         return false;
@@ -46,14 +53,10 @@ static bool take_word(eval_request *request, const char *word) {
     return true;
 }
 
-static bool read_arguments(eval_request *request, int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_eval, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
-        if (id == CLI_BAD) return false;
-        bool taken = id == CLI_WORD ? take_word(request, args.value) : take_option(request, id, args.value);
-        if (!taken) return false;
-    }
-    return true;
+static bool read_arguments(eval_request *request, cli_given *given, int argc, char **argv) {
+    if (!cli_parse(&cli_verb_eval, argc, argv, request, take_word, given)) return false;
+    request->settings.settings.threads = (int)request->threads;
+    return !request->from || cli_suits(given, STORED, "with --from");
 }
 
 /* ======================================================================================
@@ -61,21 +64,18 @@ static bool read_arguments(eval_request *request, int argc, char **argv) {
  * ====================================================================================== */
 
 static int open_file(const eval_request *request, eval_source *source) {
-    const char *given = cli_settings_given(&request->settings);
-    if (given) return cli_fail("%s has no effect with --from: %s is already computed", given, request->from);
-    if (request->orders > 0) return cli_fail("--orders is computed, not stored; leave out --from");
     lq_error error = {""};
     lq_status status = eval_source_file(source, request->from, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 
-static int open_kind(const eval_request *request, eval_source *source) {
+static int open_kind(const eval_request *request, const cli_given *given, eval_source *source) {
     lq_error error = {""};
     if (request->word_count == 0 || strchr(request->words[0], '='))
         return cli_fail("no table; usage: lacquer eval TABLE axis=value...; see lacquer list");
     const lq_kind *kind = lq_kind_find(request->words[0], &error);
     if (!kind) return cli_fail("%s", error.text);
-    if (!cli_settings_suit(&request->settings, kind)) return CLI_FAILED;
+    if (!cli_settings_suit(given, kind)) return CLI_FAILED;
     eval_source_kind(source, kind, &request->settings.settings);
     return CLI_DONE;
 }
@@ -178,21 +178,13 @@ static int eval_request_run(const eval_request *request, const eval_source *sour
 static int run(int argc, char **argv) {
     eval_request request = {.settings = cli_settings_default()};
     eval_source source = {0};
-    if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
-    int code = request.from ? open_file(&request, &source) : open_kind(&request, &source);
+    cli_given given;
+    if (!read_arguments(&request, &given, argc, argv)) return CLI_FAILED;
+    int code = request.from ? open_file(&request, &source) : open_kind(&request, &given, &source);
     if (code == CLI_DONE) code = eval_request_run(&request, &source);
     eval_source_free(&source);
     return code;
 }
-
-static const cli_option options[] = {
-    CLI_SETTINGS_OPTIONS,
-    CLI_THREADS_OPTION,
-    {OPTION_ORDERS, "orders", "N", "energy after exactly 1, 2, ... N hits instead (fgd only)"},
-    {OPTION_FROM, "from", "FILE", "interpolate a stored table, or factors of pca, instead of computing"},
-    {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)"},
-    {0},
-};
 
 static void print_notes(FILE *out) {
     fprintf(
@@ -213,6 +205,7 @@ const cli_verb cli_verb_eval = {
              "TABLE --format csv [options] < points.csv\n"
              "--from FILE axis=value... [options]",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer eval fgd mu=0.3 alpha=0.5 n=0.2 kappa=3.9\n"
                 "lacquer eval fgd mu=0.3 alpha=0.5 n=0.2 kappa=3.9 --orders 7\n"

@@ -13,19 +13,47 @@
 
 enum { SAMPLES = 256, FAMILY, RANGE, POINTS, NORM, LOSS, REPORT, TEXTURE, SNIPPET };
 
+/* Modes, by what is fitted or tabulated. */
+enum { VARIANCE = 1, MAPPING = 2, BOUNCES = 4, ANISOTROPIC = 8, TRANSMITTED = 16 };
+
+static const char *const norms[] = {"max", "rms", NULL};
+
+static bool read_range(void *field, const char *text) {
+    double *range = field;
+    char low[32] = "";
+    const char *colon = strchr(text, ':');
+    if (colon && (size_t)(colon - text) < sizeof low) memcpy(low, text, (size_t)(colon - text));
+    if (colon && cli_number(low, &range[0]) && cli_number(colon + 1, &range[1]) && range[0] >= 1e-4 &&
+        range[1] < 1.0 && range[0] < range[1])
+        return true;
+    cli_message("--range: '%s' is not A:B with 0.0001 <= A < B < 1", text);
+    return false;
+}
+
 static const cli_option options[] = {
-    {'o', "output", "FILE.json", "coefficients, covariance, errors, the paper's fit on the same points"},
-    {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)"},
-    {FAMILY, "family", "F", "parametric form, below (default: the last of its mapping)"},
+    {'o', "output", "FILE.json", "coefficients, covariance, errors, the paper's fit on the same points",
+     CLI_TEXT(fit_request, output), .silent = true},
+    {CLI_NDF, "ndf", "NDF", "distribution of microfacet normals, see `lacquer list` (default ggx)",
+     CLI_TEXT(fit_request, ndf_text)},
+    {FAMILY, "family", "F", "parametric form, below (default: the last of its mapping)",
+     CLI_TEXT(fit_request, family_name), .modes = VARIANCE | MAPPING | BOUNCES},
     {RANGE, "range", "A:B",
-     "of alpha, or g (default 0.01:0.8, or 0.9 of f's pole; hg 0.05:0.99; transmission 0.02:0.4)"},
-    {POINTS, "points", "N", "points over the range (default 256)"},
-    {NORM, "norm", "max|rms", "what is made small: the largest relative error or the rms (default max)"},
-    {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)"},
-    {REPORT, "report", "FILE.svg", "charts: curve and fits; FILE-residuals.svg"},
-    {TEXTURE, "texture", "FILE", "variance: log2 f over alpha, .exr or .npy; FILE-inverse"},
-    {SAMPLES, "samples", "N", "bounces, anisotropic: rays a row (default 200000)"},
-    {SNIPPET, "snippet", "FILE", "the function and its inverse: .glsl, .hlsl or .h"},
+     "of alpha, or g (default 0.01:0.8, or 0.9 of f's pole; hg 0.05:0.99; transmission 0.02:0.4)",
+     CLI_READ(fit_request, range, read_range), .modes = VARIANCE | MAPPING | BOUNCES},
+    {POINTS, "points", "N", "points over the range (default 256)", CLI_COUNT(fit_request, points, 8, 2000),
+     .modes = VARIANCE | MAPPING | BOUNCES},
+    {NORM, "norm", "max|rms", "what is made small: the largest relative error or the rms (default max)",
+     CLI_CHOICE(fit_request, norm, norms), .modes = VARIANCE | MAPPING | BOUNCES},
+    {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)",
+     CLI_NUMBER(fit_request, loss, 1e-6, 1e3), .modes = VARIANCE | MAPPING | BOUNCES},
+    {REPORT, "report", "FILE.svg", "charts: curve and fits; FILE-residuals.svg",
+     CLI_TEXT(fit_request, report), .modes = VARIANCE | MAPPING},
+    {TEXTURE, "texture", "FILE", "variance: log2 f over alpha, .exr or .npy; FILE-inverse",
+     CLI_TEXT(fit_request, texture), .modes = VARIANCE},
+    {SAMPLES, "samples", "N", "bounces, anisotropic: rays a row (default 200000)",
+     CLI_COUNT(fit_request, samples, 1000, 1000000000), .modes = BOUNCES | ANISOTROPIC},
+    {SNIPPET, "snippet", "FILE", "the function and its inverse: .glsl, .hlsl or .h",
+     CLI_TEXT(fit_request, snippet), .modes = VARIANCE | MAPPING},
     {0},
 };
 
@@ -58,6 +86,7 @@ const cli_verb cli_verb_fit = {
     .usage = "MAPPING -o FILE.json [options]\nbounces|anisotropic [--samples N] [-o FILE.json]\ntransmitted "
              "[-o FILE.json]",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance.svg\n"
                 "lacquer fit variance --ndf gtr:gamma=3 --texture f.exr -o gtr.json\n"
@@ -67,7 +96,8 @@ const cli_verb cli_verb_fit = {
     .run = run,
 };
 
-static bool take_mapping(fit_request *request, const char *text) {
+static bool take_mapping(void *user, const char *text) {
+    fit_request *request = user;
     const char *names[LQ_MAPPINGS + 3] = {[LQ_MAPPINGS] = "bounces", "anisotropic", "transmitted"};
     for (int i = 0; i < LQ_MAPPINGS; i++) names[i] = lq_mapping_name((lq_mapping)i);
     if (request->has_mapping) {
@@ -80,50 +110,6 @@ static bool take_mapping(fit_request *request, const char *text) {
     return request->has_mapping = choice >= 0;
 }
 
-static bool take_range(fit_request *request, const char *text) {
-    char low[32] = "";
-    const char *colon = strchr(text, ':');
-    if (colon && (size_t)(colon - text) < sizeof low) memcpy(low, text, (size_t)(colon - text));
-    if (colon && cli_number(low, &request->low) && cli_number(colon + 1, &request->high) &&
-        request->low >= 1e-4 && request->high < 1.0 && request->low < request->high)
-        return true;
-    cli_message("--range: '%s' is not A:B with 0.0001 <= A < B < 1", text);
-    return false;
-}
-
-static bool take(fit_request *request, int id, const char *value) {
-    static const char *const norms[] = {"max", "rms"};
-    int choice;
-    switch (id) {
-    case 'o':
-        return (request->output = value) != NULL;
-    case CLI_NDF:
-        return (request->ndf_text = value) != NULL;
-    case FAMILY:
-        return (request->family_name = value) != NULL;
-    case RANGE:
-        return take_range(request, value);
-    case POINTS:
-        return cli_parse_count("--points", value, 8, 2000, &request->points);
-    case NORM:
-        choice = cli_parse_choice("--norm", value, norms, 2);
-        request->smallest_rms = choice == 1;
-        return choice >= 0;
-    case SAMPLES:
-        return cli_parse_count("--samples", value, 1000, 1000000000, &request->samples);
-    case LOSS:
-        return cli_parse_number("--loss", value, 1e-6, 1e3, &request->loss);
-    case REPORT:
-        return (request->report = value) != NULL;
-    case TEXTURE:
-        return (request->texture = value) != NULL;
-    case SNIPPET:
-        return (request->snippet = value) != NULL;
-    default:
-        return take_mapping(request, value);
-    }
-}
-
 static bool find_family(fit_request *request) {
     request->family = lq_family_find(request->mapping, request->family_name);
     if (request->family >= 0) return true;
@@ -134,33 +120,44 @@ static bool find_family(fit_request *request) {
     return false;
 }
 
+static bool suits(const fit_request *request, const cli_given *given) {
+    static const struct {
+        unsigned mode;
+        const char *where;
+    } tables[] = {[FIT_BOUNCES] = {BOUNCES, "for bounces"},
+                  [FIT_ANISOTROPIC] = {ANISOTROPIC, "for anisotropic"},
+                  [FIT_TRANSMITTED] = {TRANSMITTED, "for transmitted"}};
+    if (request->table != FIT_NO_TABLE)
+        return cli_suits(given, tables[request->table].mode, tables[request->table].where);
+    if (request->mapping == LQ_MAP_VARIANCE) return cli_suits(given, VARIANCE, "for the mapping variance");
+    return cli_suits(given, MAPPING, "for this mapping");
+}
+
+static bool files_can_be_written(const fit_request *request) {
+    const char *const files[] = {request->output, request->report, request->texture, request->snippet};
+    for (int i = 0; i < 4; i++)
+        if (files[i] && !cli_output_check(files[i])) return false;
+    return true;
+}
+
 static bool parse(fit_request *request, int argc, char **argv) {
     static const double ranges[LQ_MAPPINGS][2] = {{0.01, 0.8}, {0.05, 0.99}, {0.02, 0.4}, {0.01, 0.8}};
+    cli_given given;
     *request = (fit_request){.ndf_text = "ggx", .points = 256};
-    cli_args args = cli_args_begin(&cli_verb_fit, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take(request, id, args.value)) return false;
+    if (!cli_parse(&cli_verb_fit, argc, argv, request, take_mapping, &given)) return false;
+    request->smallest_rms = request->norm == 1;
+    request->pole_ends_range = request->range[1] == 0.0;
     if (!request->has_mapping) cli_message("MAPPING is missing; see `lacquer fit --help`");
-    else if (request->table != FIT_NO_TABLE && (request->report || request->texture || request->snippet))
-        cli_message("bounces, anisotropic and transmitted take no --report, --texture or --snippet");
-    else if ((request->table == FIT_NO_TABLE || request->table == FIT_TRANSMITTED) && request->samples)
-        cli_message("--samples is for bounces and anisotropic");
+    else if (!suits(request, &given)) return false;
     else if (request->table == FIT_ANISOTROPIC && strcmp(request->ndf_text, "ggx") != 0)
         cli_message("anisotropic knows no NDF but ggx");
     else if (request->table == FIT_NO_TABLE && !request->output) cli_message("-o FILE.json is missing");
-    else if (request->texture && request->mapping != LQ_MAP_VARIANCE)
-        cli_message("--texture is for the mapping variance");
     else if (request->loss > 0.0 && !request->smallest_rms) cli_message("--loss needs --norm rms");
     else {
-        request->pole_ends_range = request->high == 0.0;
-        if (request->pole_ends_range) {
-            request->low = ranges[request->mapping][0];
-            request->high = ranges[request->mapping][1];
-        }
-        const char *const files[] = {request->output, request->report, request->texture, request->snippet};
-        for (int i = 0; i < 4; i++)
-            if (files[i] && !cli_output_check(files[i])) return false;
-        return find_family(request);
+        const double *range = request->pole_ends_range ? ranges[request->mapping] : request->range;
+        request->low = range[0];
+        request->high = range[1];
+        return files_can_be_written(request) && find_family(request);
     }
     return false;
 }

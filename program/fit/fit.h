@@ -16,6 +16,8 @@ typedef struct fit_request {
     size_t samples;                                  /* of a table; 0: the default */
     bool has_mapping, smallest_rms, pole_ends_range; /* the last: no --range was given */
     const char *family_name, *ndf_text, *output, *report, *texture, *snippet;
+    double range[2]; /* as given */
+    int norm;        /* of the option: max, rms */
     double low, high, loss;
     size_t points;
     int family;

@@ -15,19 +15,26 @@
 
 enum { OPTION_OUTPUT = 'o', OPTION_CACHE = 256, OPTION_THREADS };
 
-static bool take(pack_request *r, int id, const char *value) {
-    if (id == OPTION_OUTPUT) r->output = value;
-    if (id == OPTION_CACHE) r->cache_given = value;
-    if (id == OPTION_THREADS) return cli_parse_count("--threads", value, 1, 4096, &r->threads);
-    if (id == CLI_WORD && r->recipe_path) return cli_fail("two recipes; accepted is one"), false;
-    if (id == CLI_WORD) r->recipe_path = value;
+static const cli_option options[] = {
+    {OPTION_OUTPUT, "output", "DIR", "the folder to make, or the pack to replace (required)",
+     CLI_TEXT(pack_request, output), .silent = true},
+    {OPTION_CACHE, "cache", "DIR", "tables computed before (default: lacquer in XDG_CACHE_HOME or ~/.cache)",
+     CLI_TEXT(pack_request, cache_given), .silent = true},
+    {OPTION_THREADS, "threads", "N", "threads; the files do not depend on it (default: one per core)",
+     CLI_COUNT(pack_request, threads, 1, 4096), .silent = true},
+    {0},
+};
+
+static bool take_word(void *user, const char *word) {
+    pack_request *r = user;
+    if (r->recipe_path) return cli_fail("two recipes; accepted is one"), false;
+    r->recipe_path = word;
     return true;
 }
 
 static bool read_arguments(pack_request *r, int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_pack, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take(r, id, args.value)) return false;
+    cli_given given;
+    if (!cli_parse(&cli_verb_pack, argc, argv, r, take_word, &given)) return false;
     if (!r->recipe_path) return cli_fail("no recipe; usage: lacquer pack RECIPE.json -o DIR"), false;
     if (!r->output) return cli_fail("no output folder; add -o DIR"), false;
     if (r->cache_given) snprintf(r->cache, sizeof r->cache, "%s", r->cache_given);
@@ -178,13 +185,6 @@ static int run(int argc, char **argv) {
     return code;
 }
 
-static const cli_option options[] = {
-    {OPTION_OUTPUT, "output", "DIR", "the folder to make, or the pack to replace (required)"},
-    {OPTION_CACHE, "cache", "DIR", "tables computed before (default: lacquer in XDG_CACHE_HOME or ~/.cache)"},
-    {OPTION_THREADS, "threads", "N", "threads; the files do not depend on it (default: one per core)"},
-    {0},
-};
-
 static void print_notes(FILE *out) {
     fprintf(
         out,
@@ -199,6 +199,7 @@ const cli_verb cli_verb_pack = {
     .summary = "from a recipe to a folder of textures an engine loads",
     .usage = "RECIPE.json [options] -o DIR",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer pack recipes/realtime.json -o realtime\n"
                 "lacquer pack recipes/dfg.json -o textures --cache ~/tables",

@@ -31,8 +31,8 @@ bool pca_resolve(pca_request *request, const lq_table *table, int *channel) {
     const int count = table->axis_count;
     lq_error why = {""};
     o->value_axis = lq_table_axis(table, "tau");
-    for (int i = 0; i < request->texel_count; i++)
-        if (!fine("--texels", lq_pca_read_texels(o, request->texels[i], axes, count, &why), &why))
+    for (size_t i = 0; i < request->texels.count; i++)
+        if (!fine("--texels", lq_pca_read_texels(o, request->texels.text[i], axes, count, &why), &why))
             return false;
     const char *separate = request->separate, *split = request->split, *bases = request->bases;
     return (!separate || fine("--separate", lq_pca_read_separations(o, separate, axes, count, &why), &why)) &&

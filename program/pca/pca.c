@@ -41,117 +41,82 @@ enum {
     OPTION_SVG
 };
 
-static bool take_word(pca_request *r, const char *value) {
-    if (r->input) cli_message("two tables, '%s' and '%s'; accepted is one", r->input, value);
-    else r->input = value;
-    return r->input == value;
+/* Modes: factors as asked for, or searched within an error or a size. */
+enum { ASKED = 1, SEARCHED = 2 };
+
+static const char *const schemes[] = {[LQ_SEQUENTIAL] = "sequential", [LQ_JOINT] = "joint", NULL};
+static const char *const value_names[] = {
+    [LQ_VALUE_PLAIN] = "plain", [LQ_VALUE_SQUARE] = "square", [LQ_VALUE_BEER] = "beer", NULL};
+static const char *const norms[] = {[LQ_PCA_MAX] = "max", [LQ_PCA_RMS] = "rms", [LQ_PCA_P99] = "p99", NULL};
+
+static const cli_option options[] = {
+    {OPTION_OUTPUT, "output", "FILE", "where to write the factors, an EXR file",
+     CLI_TEXT(pca_request, output), .silent = true},
+    {OPTION_SEPARATE, "separate", "A:N,B:M", "axes to take out, in this order, and bases; A+B:N: as a plane",
+     CLI_TEXT(pca_request, separate), .modes = ASKED},
+    {OPTION_SCHEME, "scheme", "joint|sequential", "all factors together (default), or D22's iterated PCA",
+     CLI_CHOICE(pca_request, options.scheme, schemes), .modes = ASKED},
+    {OPTION_VALUE, "value", "plain|square|beer", "what is factored, see below (default plain)",
+     CLI_CHOICE(pca_request, options.value, value_names), .modes = ASKED},
+    {OPTION_BASES, "bases", "N[,M]", "bases of the plane; beer: of energy and path (default: the product)",
+     CLI_TEXT(pca_request, bases), .modes = ASKED},
+    {OPTION_PAIRS, "pairs", "N", "products of lines that make a base of two separated axes (default 2)",
+     CLI_COUNT(pca_request, options.pairs, 1, 8)},
+    {OPTION_CRITICAL, "critical", NULL, "measure mu from the critical cosine; the plane is mu, eta",
+     CLI_FLAG(pca_request, options.critical), .modes = ASKED},
+    {OPTION_TEXELS, "texels", "AXIS=N[:MAP]", "texels along an axis (default: its nodes); may be repeated",
+     CLI_LIST(pca_request, texels), .modes = ASKED},
+    {OPTION_SPLIT, "split", "AXIS=X[,Y]", "pieces with factors of their own, cut at nodes: eta=1",
+     CLI_TEXT(pca_request, split)},
+    {OPTION_BUDGET, "budget", "E", "search the smallest factors with an error of at most E",
+     CLI_NUMBER(pca_request, budget, 1e-9, 1.0)},
+    {OPTION_BYTES, "bytes", "N", "search the most exact factors within N bytes of half floats",
+     CLI_COUNT(pca_request, bytes, 64, (size_t)1 << 40)},
+    {OPTION_NORM, "norm", "max|rms|p99", "the error that counts (default max)",
+     CLI_CHOICE(pca_request, norm, norms)},
+    {OPTION_POWER, "power", "P", "of the error that is minimised (default: 8 for max, 2 rms, 4 p99)",
+     CLI_NUMBER(pca_request, options.power, 2.0, 64.0)},
+    {OPTION_SWEEPS, "sweeps", "N", "passes over all factors (default 30)",
+     CLI_COUNT(pca_request, sweeps, 0, 10000)},
+    {OPTION_CHANNEL, "channel", "NAME", "which channel of the table (default: the first)",
+     CLI_TEXT(pca_request, channel)},
+    {OPTION_RANDOM, "random", "N", "exact values at N random alpha and eta, 2 N of others (default 12)",
+     CLI_COUNT(pca_request, random, 2, 128)},
+    {OPTION_SEED, "seed", "N", "of the random points (default 1)",
+     CLI_COUNT(pca_request, seed, 0, (size_t)1 << 40)},
+    {OPTION_NODES, "nodes-only", NULL, "errors at the table's own nodes: no solver is run",
+     CLI_FLAG(pca_request, nodes_only)},
+    {OPTION_AGAINST, "against", "FILE", "errors at the nodes of this table of the same axes",
+     CLI_TEXT(pca_request, against)},
+    {OPTION_CSV, "csv", "FILE", "all that was tried: bytes, errors, worst point", CLI_TEXT(pca_request, csv),
+     .silent = true},
+    {OPTION_SVG, "svg", "FILE", "error against bytes", CLI_TEXT(pca_request, svg), .silent = true},
+    CLI_THREADS_OPTION(pca_request, 0),
+    {0},
+};
+
+static bool take_word(void *user, const char *word) {
+    pca_request *r = user;
+    if (r->input) cli_message("two tables, '%s' and '%s'; accepted is one", r->input, word);
+    else r->input = word;
+    return r->input == word;
 }
 
-static bool take_texels(pca_request *r, const char *value) {
-    if (r->texel_count == LQ_MAX_AXES) cli_message("--texels is given more than %d times", (int)LQ_MAX_AXES);
-    else r->texels[r->texel_count++] = value;
-    return r->texels[r->texel_count - 1] == value;
-}
-
-/* Options that are a text for later. */
-static const char **text_of(pca_request *r, int id) {
-    switch (id) {
-    case OPTION_OUTPUT:
-        return &r->output;
-    case OPTION_SEPARATE:
-        return &r->separate;
-    case OPTION_BASES:
-        return &r->bases;
-    case OPTION_SPLIT:
-        return &r->split;
-    case OPTION_CHANNEL:
-        return &r->channel;
-    case OPTION_AGAINST:
-        return &r->against;
-    case OPTION_CSV:
-        return &r->csv;
-    case OPTION_SVG:
-        return &r->svg;
-    default:
-        return NULL;
-    }
-}
-
-static bool take_choice(const char *what, const char *value, const char *const *choices, size_t count,
-                        int *choice) {
-    *choice = cli_parse_choice(what, value, choices, count);
-    return *choice >= 0;
-}
-
-static bool take_number(pca_request *r, int id, const char *value) {
-    static const char *const schemes[] = {"sequential", "joint"},
-                             *const values[] = {"plain", "square", "beer"},
-                             *const norms[] = {"max", "rms", "p99"};
-    lq_pca_options *o = &r->options;
-    size_t sweeps = 0;
-    int choice = 0;
-    bool good = true;
-    switch (id) {
-    case OPTION_SCHEME:
-        good = take_choice("--scheme", value, schemes, 2, &choice);
-        o->scheme = (lq_scheme)choice;
-        return good;
-    case OPTION_VALUE:
-        good = take_choice("--value", value, values, 3, &choice);
-        o->value = (lq_value)choice;
-        return good;
-    case OPTION_NORM:
-        good = take_choice("--norm", value, norms, 3, &choice);
-        r->norm = (lq_pca_norm)choice;
-        return good;
-    case OPTION_PAIRS:
-        return cli_parse_count("--pairs", value, 1, 8, &o->pairs);
-    case OPTION_POWER:
-        r->power_given = true;
-        return cli_parse_number("--power", value, 2.0, 64.0, &o->power);
-    case OPTION_SWEEPS:
-        good = cli_parse_count("--sweeps", value, 0, 10000, &sweeps);
-        o->sweeps = (int)sweeps;
-        return good;
-    case OPTION_BUDGET:
-        return cli_parse_number("--budget", value, 1e-9, 1.0, &r->budget);
-    case OPTION_BYTES:
-        return cli_parse_count("--bytes", value, 64, (size_t)1 << 40, &r->bytes);
-    case OPTION_RANDOM:
-        return cli_parse_count("--random", value, 2, 128, &r->random);
-    case OPTION_SEED:
-        return cli_parse_count("--seed", value, 0, (size_t)1 << 40, &r->seed);
-    case CLI_THREADS:
-        return cli_parse_count("--threads", value, 1, 1024, &r->threads);
-    default:
-        return false;
-    }
-}
-
-static bool take(pca_request *r, int id, const char *value) {
-    const char **text = text_of(r, id);
-    if (text) *text = value;
-    else if (id == CLI_WORD) return take_word(r, value);
-    else if (id == OPTION_TEXELS) return take_texels(r, value);
-    else if (id == OPTION_CRITICAL) r->options.critical = true;
-    else if (id == OPTION_NODES) r->nodes_only = true;
-    else return take_number(r, id, value);
-    return true;
-}
-
-/* Whether the search picks what these options would set. */
+/* Whether the search picks what options of the mode ASKED would set. */
 static bool searches(const pca_request *r) {
     return r->budget > 0.0 || r->bytes > 0;
 }
 
-static bool check(pca_request *r) {
+static bool suits(const pca_request *r, const cli_given *given) {
+    if (searches(r)) return cli_suits(given, SEARCHED, "on --budget and --bytes, which search it");
+    return cli_suits(given, ASKED, "without --budget and --bytes");
+}
+
+static bool check(pca_request *r, const cli_given *given) {
     if (!r->input) cli_message("no table; usage: lacquer pca FILE [options] -o FILE");
     else if (!r->output && !r->csv && !r->svg)
         cli_message("no output file; add -o FILE.exr, --csv FILE or --svg FILE");
-    else if (searches(r) && (r->separate || r->bases || r->texel_count > 0 || r->options.critical ||
-                             r->options.value != LQ_VALUE_PLAIN || r->options.scheme != LQ_JOINT))
-        cli_message(
-            "--budget and --bytes search separations, bases, values and texels; leave those options out");
+    else if (!suits(r, given)) return false;
     else if (!searches(r) && !r->separate && r->options.scheme == LQ_SEQUENTIAL)
         cli_message("--scheme sequential without --separate; write --separate tau:2,alpha:4");
     else
@@ -160,32 +125,12 @@ static bool check(pca_request *r) {
     return false;
 }
 
-static bool read_arguments(pca_request *r, int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_pca, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take(r, id, args.value)) return false;
-    if (!r->power_given) r->options.power = r->norm == LQ_PCA_RMS ? 2.0 : r->norm == LQ_PCA_P99 ? 4.0 : 8.0;
-    return check(r);
-}
-
-/* The command line without what does not change the numbers. NULL: out of memory. */
-static char *write_command(int argc, char **argv) {
-    static const char *const left_out[] = {"-o", "--output", "--csv", "--svg", "--threads"};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
-    fputs("lacquer pca", out);
-    for (int i = 1; i < argc; i++) {
-        bool skip = false;
-        for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++)
-            skip = skip || strcmp(argv[i], left_out[k]) == 0;
-        if (skip) i++;
-        else fprintf(out, " %s", argv[i]);
-    }
-    if (fclose(out) == 0) return text;
-    free(text);
-    return NULL;
+static bool read_arguments(pca_request *r, cli_given *given, int argc, char **argv) {
+    static const double powers[] = {[LQ_PCA_MAX] = 8.0, [LQ_PCA_RMS] = 2.0, [LQ_PCA_P99] = 4.0};
+    if (!cli_parse(&cli_verb_pca, argc, argv, r, take_word, given)) return false;
+    if (!cli_given_text(given, OPTION_POWER)) r->options.power = powers[r->norm];
+    r->options.sweeps = (int)r->sweeps;
+    return check(r, given);
 }
 
 /* ======================================================================================
@@ -310,14 +255,15 @@ static int pca(pca_request *r, const lq_table *table, const lq_table *against) {
  * ====================================================================================== */
 
 static int run(int argc, char **argv) {
-    pca_request r = {.options = lq_pca_options_default(), .random = 12, .seed = 1};
+    pca_request r = {.options = lq_pca_options_default(), .random = 12, .seed = 1, .sweeps = 30};
+    cli_given given;
     lq_error error = {""};
     lq_table *table = NULL, *against = NULL;
-    if (!read_arguments(&r, argc, argv)) return CLI_FAILED;
+    if (!read_arguments(&r, &given, argc, argv)) return CLI_FAILED;
     omp_set_num_threads(r.threads > 0 ? (int)r.threads : omp_get_num_procs());
     lq_status status = lq_table_read_exr(&table, r.input, &error);
     if (status == LQ_OK && r.against) status = lq_table_read_exr(&against, r.against, &error);
-    r.command = write_command(argc, argv);
+    r.command = cli_command(&given, &r, r.input);
     const int code = status != LQ_OK ? cli_fail_status(status, &error)
                      : r.command     ? pca(&r, table, against)
                                      : cli_fail("out of memory");
@@ -326,32 +272,6 @@ static int run(int argc, char **argv) {
     lq_table_free(against);
     return code;
 }
-
-static const cli_option options[] = {
-    {OPTION_OUTPUT, "output", "FILE", "where to write the factors, an EXR file"},
-    {OPTION_SEPARATE, "separate", "A:N,B:M", "axes to take out, in this order, and bases; A+B:N: as a plane"},
-    {OPTION_SCHEME, "scheme", "joint|sequential", "all factors together (default), or D22's iterated PCA"},
-    {OPTION_VALUE, "value", "plain|square|beer", "what is factored, see below (default plain)"},
-    {OPTION_BASES, "bases", "N[,M]", "bases of the plane; beer: of energy and path (default: the product)"},
-    {OPTION_PAIRS, "pairs", "N", "products of lines that make a base of two separated axes (default 2)"},
-    {OPTION_CRITICAL, "critical", NULL, "measure mu from the critical cosine; the plane is mu, eta"},
-    {OPTION_TEXELS, "texels", "AXIS=N[:MAP]", "texels along an axis (default: its nodes); may be repeated"},
-    {OPTION_SPLIT, "split", "AXIS=X[,Y]", "pieces with factors of their own, cut at nodes: eta=1"},
-    {OPTION_BUDGET, "budget", "E", "search the smallest factors with an error of at most E"},
-    {OPTION_BYTES, "bytes", "N", "search the most exact factors within N bytes of half floats"},
-    {OPTION_NORM, "norm", "max|rms|p99", "the error that counts (default max)"},
-    {OPTION_POWER, "power", "P", "of the error that is minimised (default: 8 for max, 2 rms, 4 p99)"},
-    {OPTION_SWEEPS, "sweeps", "N", "passes over all factors (default 30)"},
-    {OPTION_CHANNEL, "channel", "NAME", "which channel of the table (default: the first)"},
-    {OPTION_RANDOM, "random", "N", "exact values at N random alpha and eta, 2 N of others (default 12)"},
-    {OPTION_SEED, "seed", "N", "of the random points (default 1)"},
-    {OPTION_NODES, "nodes-only", NULL, "errors at the table's own nodes: no solver is run"},
-    {OPTION_AGAINST, "against", "FILE", "errors at the nodes of this table of the same axes"},
-    {OPTION_CSV, "csv", "FILE", "all that was tried: bytes, errors, worst point"},
-    {OPTION_SVG, "svg", "FILE", "error against bytes"},
-    CLI_THREADS_OPTION,
-    {0},
-};
 
 static void print_notes(FILE *out) {
     fprintf(
@@ -373,6 +293,7 @@ const cli_verb cli_verb_pca = {
     .summary = "a table into small textures, with the error a GPU will see",
     .usage = "FILE [--separate A:N,B:M | --budget E | --bytes N] [options] -o FILE",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples =
         "lacquer pca t01.exr --separate tau:2,alpha:4 --scheme sequential -o t01-d22.exr\n"

@@ -3,19 +3,19 @@
 #define LACQUER_PROGRAM_PCA_PCA_H
 
 #include "lacquer.h"
+#include "program/verb.h"
 
 /* The command line. */
 typedef struct pca_request {
     const char *input, *output, *separate, *split, *bases, *channel, *against, *csv, *svg;
-    const char *texels[LQ_MAX_AXES];
-    int texel_count;
+    cli_texts texels;
     bool nodes_only;
     size_t random; /* random nodes of an axis in the table of exact values */
     size_t seed;
     double budget; /* 0: none */
     size_t bytes;  /* 0: any */
     lq_pca_norm norm;
-    bool power_given;
+    size_t sweeps;
     lq_pca_options options;
     size_t threads; /* 0: one per core */
     char *command;

@@ -24,35 +24,37 @@ enum {
     FORMATS,
     FORMAT_ENDINGS = FORMAT_BELCOUR
 };
-static const char *const formats[FORMATS] = {"exr", "npy", "belcour", "tm", "mitsuba"};
-
-/* Why this is more than LQ_MAX_AXES: a fifth --axis must be refused by its name. */
-enum { MAX_AXIS_OPTIONS = 2 * LQ_MAX_AXES };
+static const char *const formats[FORMATS + 1] = {"exr", "npy", "belcour", "tm", "mitsuba", NULL};
 
 typedef struct table_request {
     const char *table;
-    const char *axes[MAX_AXIS_OPTIONS]; /* name=spec */
-    int axis_count;
+    cli_texts axes; /* name=spec */
     cli_settings settings;
-    int format;
-    const char *format_text, *output;
+    size_t threads;
+    int format; /* -1: from the ending of the output file */
+    const char *output;
     char *command; /* what determines the table, as a command line; owned */
 } table_request;
+
+static const cli_option options[] = {
+    {OPTION_OUTPUT, "output", "FILE", "where to write (required); the ending .exr or .npy picks the format",
+     CLI_TEXT(table_request, output), .silent = true},
+    {OPTION_FORMAT, "format", "exr|npy|belcour|tm|mitsuba",
+     "the format, whatever the ending; see lacquer list", CLI_CHOICE(table_request, format, formats),
+     .silent = true},
+    {OPTION_AXIS, "axis", "NAME=MIN:MAX:N[:MAP]", "nodes of one axis (default: below); may be repeated",
+     CLI_LIST(table_request, axes)},
+    CLI_SETTINGS_OPTIONS(table_request, 0),
+    CLI_THREADS_OPTION(table_request, 0),
+    {0},
+};
 
 /* ======================================================================================
  *                                       Arguments
  * ====================================================================================== */
 
-static bool take_axis(table_request *request, const char *value) {
-    if (request->axis_count == MAX_AXIS_OPTIONS) {
-        cli_message("--axis: too many at '%s'", value);
-        return false;
-    }
-    request->axes[request->axis_count++] = value;
-    return true;
-}
-
-static bool take_word(table_request *request, const char *word) {
+static bool take_word(void *user, const char *word) {
+    table_request *request = user;
     if (request->table) {
         cli_message("unexpected '%s'; precompute takes one TABLE; axes are given as --axis name=min:max:n",
                     word);
@@ -62,20 +64,9 @@ static bool take_word(table_request *request, const char *word) {
     return true;
 }
 
-static bool take_option(table_request *request, int id, const char *value) {
-    int taken = cli_settings_take(&request->settings, id, value);
-    if (taken != 0) return taken > 0;
-    if (id == CLI_WORD) return take_word(request, value);
-    if (id == OPTION_AXIS) return take_axis(request, value);
-    if (id == OPTION_OUTPUT) request->output = value;
-    if (id == OPTION_FORMAT) request->format_text = value;
-    return true;
-}
-
-static bool read_arguments(table_request *request, int argc, char **argv) {
-    cli_args args = cli_args_begin(&cli_verb_precompute, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;)
-        if (id == CLI_BAD || !take_option(request, id, args.value)) return false;
+static bool read_arguments(table_request *request, cli_given *given, int argc, char **argv) {
+    if (!cli_parse(&cli_verb_precompute, argc, argv, request, take_word, given)) return false;
+    request->settings.settings.threads = (int)request->threads;
     if (!request->table) {
         cli_message("no table; usage: lacquer precompute TABLE -o FILE; see lacquer list");
         return false;
@@ -86,10 +77,7 @@ static bool read_arguments(table_request *request, int argc, char **argv) {
 
 /* From --format, otherwise from the ending of the output file. */
 static bool find_format(table_request *request) {
-    if (request->format_text) {
-        request->format = cli_parse_choice("--format", request->format_text, formats, FORMATS);
-        return request->format >= 0;
-    }
+    if (request->format >= 0) return true;
     const char *dot = strrchr(cli_basename(request->output), '.');
     for (request->format = 0; request->format < FORMAT_ENDINGS; request->format++)
         if (dot && strcasecmp(dot + 1, formats[request->format]) == 0) return true;
@@ -157,8 +145,8 @@ static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis
         cli_message("%s", error.text);
         return false;
     }
-    for (int i = 0; i < request->axis_count; i++) {
-        if (set_axis(kind, request->axes[i], axes, given)) continue;
+    for (size_t i = 0; i < request->axes.count; i++) {
+        if (set_axis(kind, request->axes.text[i], axes, given)) continue;
         free_axes(kind, axes);
         return false;
     }
@@ -168,23 +156,6 @@ static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis
 /* ======================================================================================
  *                                     Computation
  * ====================================================================================== */
-
-/* The command line in a fixed order, without what does not change the numbers (threads, the file's
- * name): the same table is the same file, bit for bit. NULL: out of memory. */
-static char *write_command(const table_request *request) {
-    static const char *const names[] = {"ndf", "scattering", "masking", "tolerance"};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
-    fprintf(out, "lacquer precompute %s", request->table);
-    for (int i = 0; i < request->axis_count; i++) fprintf(out, " --axis %s", request->axes[i]);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (request->settings.given[i]) fprintf(out, " --%s %s", names[i], request->settings.given[i]);
-    if (fclose(out) == 0) return text;
-    free(text);
-    return NULL;
-}
 
 static lq_status compute(const table_request *request, const lq_kind *kind, const lq_axis *axes,
                          lq_table **table, lq_error *error) {
@@ -265,17 +236,18 @@ static int precompute(const table_request *request, const lq_kind *kind, const l
  * ====================================================================================== */
 
 static int run(int argc, char **argv) {
-    table_request request = {.settings = cli_settings_default()};
+    table_request request = {.settings = cli_settings_default(), .format = -1};
+    cli_given given;
     lq_axis axes[LQ_MAX_AXES] = {0};
     lq_error error = {""};
-    if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
+    if (!read_arguments(&request, &given, argc, argv)) return CLI_FAILED;
     const lq_kind *kind = lq_kind_find(request.table, &error);
     if (!kind) return cli_fail("%s", error.text);
-    if (!cli_settings_suit(&request.settings, kind) || !find_format(&request)) return CLI_FAILED;
+    if (!cli_settings_suit(&given, kind) || !find_format(&request)) return CLI_FAILED;
     if (!cli_output_check(request.output) || !make_axes(&request, kind, axes)) return CLI_FAILED;
     int code = CLI_FAILED;
     if (format_suits(&request, kind, axes)) {
-        request.command = write_command(&request);
+        request.command = cli_command(&given, &request, request.table);
         if (!request.command) code = cli_fail("out of memory");
         else if (is_mitsuba(&request, kind)) code = precompute_file(&request, kind, axes);
         else code = precompute(&request, kind, axes);
@@ -284,16 +256,6 @@ static int run(int argc, char **argv) {
     free_axes(kind, axes);
     return code;
 }
-
-static const cli_option options[] = {
-    {OPTION_OUTPUT, "output", "FILE", "where to write (required); the ending .exr or .npy picks the format"},
-    {OPTION_FORMAT, "format", "exr|npy|belcour|tm|mitsuba",
-     "the format, whatever the ending; see lacquer list"},
-    {OPTION_AXIS, "axis", "NAME=MIN:MAX:N[:MAP]", "nodes of one axis (default: below); may be repeated"},
-    CLI_SETTINGS_OPTIONS,
-    CLI_THREADS_OPTION,
-    {0},
-};
 
 static void print_notes(FILE *out) {
     fprintf(out,
@@ -309,6 +271,7 @@ const cli_verb cli_verb_precompute = {
     .summary = "a whole table, on all cores, into a file",
     .usage = "TABLE [--axis NAME=NODES]... [options] -o FILE",
     .options = options,
+    .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer precompute albedo -o albedo.exr\n"
                 "lacquer precompute fgd -o fgd.exr\n"

@@ -23,7 +23,7 @@ static lq_status read_published(lq_table **table, const char *path, const valida
 static lq_status assume_origin(against_job *job, lq_error *error) {
     job->origin.kind = lq_kind_find(job->request->kind, error);
     if (!job->origin.kind) return LQ_BAD_INPUT;
-    if (!cli_settings_suit(&job->request->settings, job->origin.kind)) return LQ_CANCELLED;
+    if (!cli_settings_suit(&job->request->given, job->origin.kind)) return LQ_CANCELLED;
     job->origin.settings = job->request->settings.settings;
     const char *masking = lq_table_fact(job->other, "masking");
     if (masking && strcmp(masking, "separable") == 0) job->origin.settings.masking = LQ_SEPARABLE;
@@ -73,7 +73,7 @@ static lq_status load(against_job *job, lq_error *error) {
     }
     if (status == LQ_OK) status = same_kind(job, error);
     if (status != LQ_OK) return status;
-    job->origin.settings.threads = request->threads;
+    job->origin.settings.threads = (int)request->threads;
     job->allowance = job->origin.settings.tolerance + rounding;
     if (request->other) job->allowance += stated_tolerance(job->other);
     return LQ_OK;

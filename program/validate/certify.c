@@ -32,28 +32,9 @@ bool certify_take_budget(certify_request *request, const char *value) {
     return accept(lq_budget_parse(&request->budgets.rules[0].budget, value, &error), &error);
 }
 
-bool certify_take(certify_request *request, int id, const char *value) {
+bool certify_take_domain(certify_request *request, const char *value) {
     lq_error error = {""};
-    request->wanted = true;
-    switch (id) {
-    case CERTIFY_ON:
-        return accept(lq_ranges_parse(&request->domain, value, &error), &error);
-    case CERTIFY_TABLE:
-        request->table = value;
-        break;
-    case CERTIFY_JUNIT:
-        request->junit = value;
-        return cli_output_check(value);
-    case CERTIFY_PARTS:
-        request->parts = true;
-        break;
-    case CERTIFY_REPORT:
-        request->report = value;
-        break;
-    default:
-        break;
-    }
-    return true;
+    return accept(lq_ranges_parse(&request->domain, value, &error), &error);
 }
 
 /* The rule for one table; --on goes before the file's ranges. */

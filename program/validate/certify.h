@@ -16,15 +16,41 @@ enum {
     CERTIFY_LAST = CERTIFY_PARTS
 };
 
-/* Rows for the option list of the verb. */
+/* Rows for the option list of the verb, in whose mode CERTIFIED they mean something. */
 #define CERTIFY_OPTIONS                                                                                      \
-    {CERTIFY_CERTIFICATE, "certificate", NULL,                                                               \
-     "certify: 100000 points against the solver, worst point, error parts, physics"},                        \
-        {CERTIFY_ON, "on", "A=MIN:MAX,...", "certify this part of the axes only (default: all of them)"},    \
-        {CERTIFY_TABLE, "table", "FILE", "the table that a factor file was made from, for its error parts"}, \
-        {CERTIFY_PARTS, "parts", NULL, "of a pack: compute those tables anew, for all error parts"},         \
-        {CERTIFY_JUNIT, "junit", "FILE", "write the certificate's judgements as JUnit XML"}, {               \
-        CERTIFY_REPORT, "report", "DIR", "write the certificate as a web page, DIR/index.html"               \
+    {CERTIFY_CERTIFICATE,                                                                                    \
+     "certificate",                                                                                          \
+     NULL,                                                                                                   \
+     "certify: 100000 points against the solver, worst point, error parts, physics",                         \
+     CLI_FLAG(validate_request, certify.wanted),                                                             \
+     .modes = CERTIFIED},                                                                                    \
+        {CERTIFY_ON,                                                                                         \
+         "on",                                                                                               \
+         "A=MIN:MAX,...",                                                                                    \
+         "certify this part of the axes only (default: all of them)",                                        \
+         CLI_READ(validate_request, certify, read_domain),                                                   \
+         .modes = CERTIFIED},                                                                                \
+        {CERTIFY_TABLE,                                                                                      \
+         "table",                                                                                            \
+         "FILE",                                                                                             \
+         "the table that a factor file was made from, for its error parts",                                  \
+         CLI_TEXT(validate_request, certify.table),                                                          \
+         .modes = CERTIFIED},                                                                                \
+        {CERTIFY_PARTS,                                                                                      \
+         "parts",                                                                                            \
+         NULL,                                                                                               \
+         "of a pack: compute those tables anew, for all error parts",                                        \
+         CLI_FLAG(validate_request, certify.parts),                                                          \
+         .modes = CERTIFIED},                                                                                \
+        {CERTIFY_JUNIT,                                                                                      \
+         "junit",                                                                                            \
+         "FILE",                                                                                             \
+         "write the certificate's judgements as JUnit XML",                                                  \
+         CLI_TEXT(validate_request, certify.junit),                                                          \
+         .modes = CERTIFIED},                                                                                \
+    {                                                                                                        \
+        CERTIFY_REPORT, "report", "DIR", "write the certificate as a web page, DIR/index.html",              \
+            CLI_TEXT(validate_request, certify.report), .modes = CERTIFIED                                   \
     }
 
 typedef struct certify_request {
@@ -42,8 +68,8 @@ typedef struct certify_request {
     bool json;
 } certify_request;
 
-/* Take one of the options above, or a --budget that is no plain number; false: a line was printed. */
-bool certify_take(certify_request *request, int id, const char *value);
+/* --on, and a --budget that is no plain number; false: a line was printed. */
+bool certify_take_domain(certify_request *request, const char *value);
 bool certify_take_budget(certify_request *request, const char *value);
 
 /* Is this something that only a certificate can be made of? A folder. */

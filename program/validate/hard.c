@@ -69,7 +69,7 @@ int validate_hard_cases(const validate_request *request) {
     cli_progress_begin(&bar, "hard cases");
     const lq_hard_run run = {.source = {lq_eval, lq_precompute},
                              .ndf = request->settings.settings.ndf,
-                             .threads = request->threads,
+                             .threads = (int)request->threads,
                              .report = take_row,
                              .user = &report,
                              .progress = &bar.progress};

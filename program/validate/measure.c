@@ -119,7 +119,7 @@ lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_er
     lq_status status = prepare(job, error);
     if (status != LQ_OK) return status;
     const size_t points = job->request.points;
-    const int threads = job->request.threads > 0 ? job->request.threads : omp_get_max_threads();
+    const int threads = job->request.threads > 0 ? (int)job->request.threads : omp_get_max_threads();
     const bool side_by_side = points >= (size_t)threads;
     job->walk_threads = side_by_side ? 1 : threads;
     size_t done = 0;

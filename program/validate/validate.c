@@ -3,6 +3,7 @@
 
 #include "program/message.h"
 #include "program/options.h"
+#include "program/output.h"
 #include "program/settings.h"
 #include "validate/walk.h"
 #include "validate/walk_kind.h"
@@ -12,26 +13,6 @@
 #include <unistd.h>
 
 enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE };
-
-static const cli_option options[] = {
-    {AGAINST, "against", "exact|walk|OTHER",
-     "the solver; random walks as well; another table, EXR or published (default exact)"},
-    {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table"},
-    {KIND, "kind", "TABLE", "which table that file holds; it does not say itself"},
-    {AXES, "axes", "AXES.json", "FILE is a .npy, EXR or C array of anybody's, described there"},
-    {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong"},
-    {SAMPLES, "samples", "N", "random walks per point (default 100000)"},
-    {POINTS, "points", "P", "points, half of them stored entries (default 256)"},
-    {SEED, "seed", "S", "of the points and of the walks (default 1)"},
-    {BUDGET, "budget", "E|max=E,p99=E|FILE",
-     "largest error that stored and interpolated values may have; by norm, or a budget file: certify"},
-    CERTIFY_OPTIONS,
-    {FORMAT, "format", "text|json", "of the report (default text)"},
-    {JSON, "json", NULL, "the same as --format json"},
-    CLI_SETTINGS_OPTIONS,
-    CLI_THREADS_OPTION,
-    {0},
-};
 
 static void print_notes(FILE *out) {
     fprintf(
@@ -59,28 +40,20 @@ static void print_notes(FILE *out) {
         "of one, DIR a folder of them. docs/certificates.md describes it and the budget file.\n");
 }
 
-static int run(int argc, char **argv);
-
-const cli_verb cli_verb_validate = {
-    .name = "validate",
-    .summary = "check a stored table against the exact solver and random walks",
-    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]",
-    .options = options,
-    .notes = print_notes,
-    .examples = "lacquer validate fgd.exr\n"
-                "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
-                "lacquer validate fgd.exr --budget 1e-3 --format json\n"
-                "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
-                "lacquer validate tables/ --budget budget.json --report page --junit tables.xml\n"
-                "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
-                "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
-                "lacquer validate theirs.npy --axes theirs.json\n"
-                "lacquer validate fgd.exr --diagnose\n"
-                "lacquer validate hard-cases",
-    .run = run,
+/* Modes. */
+enum {
+    OWN = 1,         /* FILE of this program, against the solver */
+    WALKED = 2,      /* and against walks */
+    OTHERS = 4,      /* against another table */
+    PUBLISHED = 8,   /* a published FILE alone */
+    DESCRIBED = 16,  /* anybody's, --axes */
+    DIAGNOSED = 32,  /* --diagnose */
+    CERTIFIED = 64,  /* a certificate */
+    HARD_CASES = 128 /* no file at all */
 };
 
-static bool take_against(validate_request *request, const char *text) {
+static bool read_against(void *field, const char *text) {
+    validate_request *request = field;
     request->walk = strcmp(text, "walk") == 0;
     request->other = NULL;
     if (request->walk || strcmp(text, "exact") == 0) return true;
@@ -90,65 +63,65 @@ static bool take_against(validate_request *request, const char *text) {
     return false;
 }
 
-static bool take_layout(validate_request *request, const char *text) {
+static bool read_layout(void *field, const char *text) {
     const char *names[LQ_LAYOUTS];
     for (int i = 0; i < LQ_LAYOUTS; i++) names[i] = lq_layout_name((lq_layout)i);
-    return (request->layout = cli_parse_choice("--layout", text, names, LQ_LAYOUTS)) >= 0;
-}
-
-static bool take_format(validate_request *request, const char *text) {
-    static const char *const choices[] = {"text", "json"};
-    const int choice = cli_parse_choice("--format", text, choices, 2);
-    request->json = choice == 1;
+    const int choice = cli_parse_choice("--layout", text, names, LQ_LAYOUTS);
+    if (choice >= 0) *(int *)field = choice;
     return choice >= 0;
 }
 
-static bool take(validate_request *request, int id, const char *value) {
-    size_t threads = 0;
-    if (id >= CERTIFY_FIRST && id <= CERTIFY_LAST) return certify_take(&request->certify, id, value);
-    if (id >= CLI_NDF && id < CLI_THREADS) return cli_settings_take(&request->settings, id, value) > 0;
-    switch (id) {
-    case AGAINST:
-        return take_against(request, value);
-    case SAMPLES:
-        return cli_parse_count("--samples", value, 2, LQ_WALK_MAX_SAMPLES, &request->samples);
-    case LAYOUT:
-        return take_layout(request, value);
-    case KIND:
-        request->kind = value;
-        return true;
-    case AXES:
-        request->axes = value;
-        return true;
-    case DIAGNOSE:
-        request->diagnose = true;
-        return true;
-    case POINTS:
-        request->points_given = true;
-        return cli_parse_count("--points", value, 2, 10000000, &request->points);
-    case SEED:
-        return cli_parse_count("--seed", value, 0, SIZE_MAX, &request->seed);
-    case BUDGET:
-        if (strchr(value, '=') || !cli_number(value, &request->budget))
-            return certify_take_budget(&request->certify, value);
-        return cli_parse_number("--budget", value, 1e-12, 1.0, &request->budget);
-    case JSON:
-        return request->json = true;
-    case FORMAT:
-        return take_format(request, value);
-    case CLI_THREADS:
-        if (!cli_parse_count("--threads", value, 1, 4096, &threads)) return false;
-        request->threads = (int)threads;
-        return true;
-    default:
-        break;
-    }
-    if (!request->file) {
-        request->file = value;
-        return true;
-    }
-    cli_message("one FILE at a time: '%s' after '%s'", value, request->file);
-    return false;
+static bool read_budget(void *field, const char *value) {
+    validate_request *request = field;
+    if (strchr(value, '=') || !cli_number(value, &request->budget))
+        return certify_take_budget(&request->certify, value);
+    return cli_parse_number("--budget", value, 1e-12, 1.0, &request->budget);
+}
+
+static bool read_domain(void *field, const char *value) {
+    return certify_take_domain(field, value);
+}
+
+static const char *const formats[] = {"text", "json", NULL};
+
+static const cli_option options[] = {
+    {AGAINST, "against", "exact|walk|OTHER",
+     "the solver; random walks as well; another table, EXR or published (default exact)",
+     .type = CLI_TYPE_READ, .read = read_against, .modes = OWN | WALKED | OTHERS | PUBLISHED},
+    {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table",
+     CLI_READ(validate_request, layout, read_layout), .modes = OTHERS | PUBLISHED},
+    {KIND, "kind", "TABLE", "which table that file holds; it does not say itself",
+     CLI_TEXT(validate_request, kind), .modes = OTHERS | PUBLISHED},
+    {AXES, "axes", "AXES.json", "FILE is a .npy, EXR or C array of anybody's, described there",
+     CLI_TEXT(validate_request, axes), .modes = DESCRIBED},
+    {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong",
+     CLI_FLAG(validate_request, diagnose), .modes = DIAGNOSED},
+    {SAMPLES, "samples", "N", "random walks per point (default 100000)",
+     CLI_COUNT(validate_request, samples, 2, (double)LQ_WALK_MAX_SAMPLES), .modes = WALKED},
+    {POINTS, "points", "P", "points, half of them stored entries (default 256)",
+     CLI_COUNT(validate_request, points, 2, 10000000), .modes = ~(unsigned)HARD_CASES},
+    {SEED, "seed", "S", "of the points and of the walks (default 1)",
+     CLI_COUNT(validate_request, seed, 0, (double)SIZE_MAX), .modes = ~(unsigned)HARD_CASES},
+    {BUDGET, "budget", "E|max=E,p99=E|FILE",
+     "largest error that stored and interpolated values may have; by norm, or a budget file: certify",
+     .type = CLI_TYPE_READ, .read = read_budget, .modes = ~(unsigned)HARD_CASES},
+    CERTIFY_OPTIONS,
+    {FORMAT, "format", "text|json", "of the report (default text)",
+     CLI_CHOICE(validate_request, format, formats)},
+    {JSON, "json", NULL, "the same as --format json", CLI_FLAG(validate_request, json)},
+    CLI_NDF_OPTION(validate_request, PUBLISHED | HARD_CASES),
+    CLI_SCATTERING_OPTION(validate_request, PUBLISHED),
+    CLI_MASKING_OPTION(validate_request, PUBLISHED),
+    CLI_TOLERANCE_OPTION(validate_request, PUBLISHED),
+    CLI_THREADS_OPTION(validate_request, 0),
+    {0},
+};
+
+static bool take_word(void *user, const char *word) {
+    validate_request *request = user;
+    if (request->file) cli_message("one FILE at a time: '%s' after '%s'", word, request->file);
+    else request->file = word;
+    return request->file == word;
 }
 
 /* The word that stands in place of FILE; a file of that name is ./hard-cases. */
@@ -156,40 +129,36 @@ static bool is_hard_cases(const validate_request *request) {
     return strcmp(request->file, "hard-cases") == 0;
 }
 
-/* Of all options, the cases take the NDF, the format and the threads. */
-static bool suits_hard_cases(const validate_request *request) {
-    const cli_settings *settings = &request->settings;
-    const char *given = NULL;
-    if (settings->given[CLI_SCATTERING - CLI_NDF]) given = "--scattering";
-    if (settings->given[CLI_MASKING - CLI_NDF]) given = "--masking";
-    if (settings->given[CLI_TOLERANCE - CLI_NDF]) given = "--tolerance";
-    if (request->layout >= 0) given = "--layout";
-    if (request->kind) given = "--kind";
-    if (request->axes) given = "--axes";
-    if (request->diagnose) given = "--diagnose";
-    if (request->budget > 0.0) given = "--budget";
-    if (request->points_given) given = "--points";
-    if (request->walk || request->other) given = "--against";
-    if (given) cli_message("hard-cases takes no %s: every case has its own limit", given);
-    return !given;
+/* The mode asked for, in words as well. */
+static unsigned mode_of(const validate_request *request, const char **where) {
+    const struct {
+        bool asked;
+        unsigned mode;
+        const char *where;
+    } modes[] = {
+        {is_hard_cases(request), HARD_CASES, "for hard-cases: every case has its own limit"},
+        {request->axes, DESCRIBED, "with --axes, which says how FILE was made"},
+        {request->diagnose, DIAGNOSED, "with --diagnose, which is for FILE alone"},
+        {request->other, OTHERS, "with --against OTHER"},
+        {request->layout >= 0, PUBLISHED, "for a published FILE"},
+        {request->certify.wanted, CERTIFIED, "on a certificate, which is made against the solver"},
+        {request->walk, WALKED, "for a FILE of this program, which says itself how it was made"},
+    };
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++)
+        if (modes[i].asked) return *where = modes[i].where, modes[i].mode;
+    *where = "without --against walk, --layout or --against OTHER";
+    return OWN;
 }
 
-/* Do the options about published tables go together? */
-static bool suits(const validate_request *request) {
-    const char *given = cli_settings_given(&request->settings);
-    const bool published = request->layout >= 0;
-    if (published && !request->kind)
-        cli_message("--layout needs --kind: a published file does not say which table it holds");
-    else if (!published && request->kind) cli_message("--kind needs --layout");
-    else if (request->axes && (published || request->other || request->walk || request->diagnose))
-        cli_message("--axes describes FILE alone: leave out --layout, --against and --diagnose");
-    else if (request->axes && given) cli_message("%s: %s says how FILE was made", given, request->axes);
-    else if (request->diagnose && (published || request->other || request->walk))
-        cli_message("--diagnose is for FILE alone; --layout and --against OTHER diagnose as they are");
-    else if (published && request->walk)
+static bool suits(const validate_request *request, const cli_given *given) {
+    const char *where;
+    const unsigned mode = mode_of(request, &where);
+    if (mode == PUBLISHED && request->walk)
         cli_message("a published table is not checked by walks; drop --layout or --against walk");
-    else if (given && (!published || request->other))
-        cli_message("%s: FILE says itself how it was made; a published FILE takes it, with --layout", given);
+    else if (!cli_suits(given, mode, where)) return false;
+    else if (request->layout >= 0 && !request->kind)
+        cli_message("--layout needs --kind: a published file does not say which table it holds");
+    else if (request->layout < 0 && request->kind) cli_message("--kind needs --layout");
     else return true;
     return false;
 }
@@ -198,15 +167,15 @@ static bool parse(validate_request *request, int argc, char **argv) {
     *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
     request->settings = cli_settings_default();
     request->certify.budgets.count = 1;
-    bool samples_given = false;
-    cli_args args = cli_args_begin(&cli_verb_validate, argc, argv);
-    for (int id; (id = cli_args_next(&args)) != CLI_END;) {
-        if (id == CLI_BAD || !take(request, id, args.value)) return false;
-        samples_given |= id == SAMPLES;
-    }
+    if (!cli_parse(&cli_verb_validate, argc, argv, request, take_word, &request->given)) return false;
+    request->points_given = cli_given_text(&request->given, POINTS) != NULL;
+    request->json |= request->format == 1;
+    for (int id = CERTIFY_FIRST; id <= CERTIFY_LAST; id++)
+        request->certify.wanted |= cli_given_text(&request->given, id) != NULL;
     if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
-    else if (samples_given && !request->walk) cli_message("--samples needs --against walk");
-    else return is_hard_cases(request) ? suits_hard_cases(request) : suits(request);
+    else
+        return (!request->certify.junit || cli_output_check(request->certify.junit)) &&
+               suits(request, &request->given);
     return false;
 }
 
@@ -228,7 +197,7 @@ static lq_status load(validate_job *job, lq_error *error) {
         snprintf(error->text, sizeof error->text, "no random walk is known for table '%s'",
                  job->origin.kind->id);
     }
-    job->origin.settings.threads = job->request.threads;
+    job->origin.settings.threads = (int)job->request.threads;
     return status;
 }
 
@@ -249,7 +218,7 @@ static int certify(validate_request *request) {
     c->path = request->file;
     c->points = request->points_given ? request->points : 0;
     c->seed = request->seed;
-    c->threads = request->threads;
+    c->threads = (int)request->threads;
     c->json = request->json;
     if (request->budget > 0.0) c->budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
     c->has_budget |= request->budget > 0.0;
@@ -279,3 +248,23 @@ static int run(int argc, char **argv) {
     validate_free(&job);
     return code;
 }
+
+const cli_verb cli_verb_validate = {
+    .name = "validate",
+    .summary = "check a stored table against the exact solver and random walks",
+    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]",
+    .options = options,
+    .option_count = CLI_COUNTED(options),
+    .notes = print_notes,
+    .examples = "lacquer validate fgd.exr\n"
+                "lacquer validate fgd.exr --against walk --samples 1000000 --points 64\n"
+                "lacquer validate fgd.exr --budget 1e-3 --format json\n"
+                "lacquer validate fgd.exr --budget max=1e-2,p99=2e-3 --on mu=0.02:1,alpha=0.02:1\n"
+                "lacquer validate tables/ --budget budget.json --report page --junit tables.xml\n"
+                "lacquer validate tir.exr --against TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
+                "lacquer validate theirs.npy --axes theirs.json\n"
+                "lacquer validate fgd.exr --diagnose\n"
+                "lacquer validate hard-cases",
+    .run = run,
+};

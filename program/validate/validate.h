@@ -16,12 +16,14 @@ typedef struct validate_request {
     bool walk, json;
     size_t samples, points, seed;
     double budget; /* 0: none */
-    int threads;
+    size_t threads;
+    int format; /* of the option: text, json */
     /* Another table: --against OTHER, or FILE itself where it is a published one (other NULL, layout >= 0).
      */
     const char *other, *kind;
     int layout; /* of OTHER, or of FILE where there is none; -1: EXR */
     cli_settings settings;
+    cli_given given; /* the options, as the command gave them */
     bool points_given;
     certify_request certify;
     const char *axes; /* a JSON text that says what FILE, of anybody's, is */
