@@ -415,8 +415,9 @@ double lq_factored_lookup_gpu(const lq_factored *factored, const double *point);
 /* Bytes of all bases stored in half. */
 size_t lq_factored_bytes(const lq_factored *factored);
 
-/* Its fact, or NULL. */
+/* Its fact, or NULL; set or replace one. */
 const char *lq_factored_fact(const lq_factored *factored, const char *key);
+lq_status lq_factored_set_fact(lq_factored *factored, const char *key, const char *value, lq_error *error);
 void lq_factored_free(lq_factored *factored);
 
 /* One file, an EXR archive: reading back gives an identical factored table. LQ_FORMAT where the file holds a
@@ -441,7 +442,7 @@ typedef struct lq_separation {
 } lq_separation;
 
 typedef struct lq_pca_options {
-    size_t struct_size;
+    size_t struct_size; /* sizeof(lq_pca_options); that of an older header is read as far as it goes */
     lq_scheme scheme;
     int separation_count; /* what stays is the plane: 1 or 2 axes */
     lq_separation separations[LQ_MAX_AXES];

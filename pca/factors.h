@@ -36,9 +36,6 @@ lq_status lq_factor_create(lq_factor *factor, const lq_texture_axis *axes, int a
 lq_status lq_term_sum_create(lq_term_sum *sum, size_t term_count, const int *factors, int factor_count,
                              lq_error *error);
 
-/* Set or replace a fact. */
-lq_status lq_factored_set_fact(lq_factored *factored, const char *key, const char *value, lq_error *error);
-
 /* What every reader relies on: counts, indices, ranges, data exact in half and finite. */
 lq_status lq_factored_check(const lq_factored *factored, lq_error *error);
 

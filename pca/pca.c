@@ -81,10 +81,26 @@ static lq_status check_critical(const lq_table *table, const lq_pca_options *opt
                    "the critical cosine needs mu and eta below 1 in one plane: separate the others");
 }
 
+/* What options of an older header say; what that header did not have is as the defaults are. */
+lq_status lq_pca_options_read(lq_pca_options *options, const lq_pca_options *given, lq_error *error) {
+    const size_t first = offsetof(lq_pca_options, splits) + sizeof given->splits; /* version 0.1.0 */
+    *options = lq_pca_options_default();
+    if (given->struct_size < first || given->struct_size > sizeof *options)
+        return lq_fail(error, LQ_BAD_INPUT,
+                       "options of another version, of %zu bytes; start from lq_pca_options_default()",
+                       given->struct_size);
+    memcpy(options, given, given->struct_size);
+    options->struct_size = sizeof *options;
+    return LQ_OK;
+}
+
 lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error) {
     if (options->split_count < 0 || options->split_count >= LQ_MAX_PIECES)
         return lq_fail(error, LQ_BAD_INPUT, "%d splits; accepted are 0 to %d", options->split_count,
                        LQ_MAX_PIECES - 1);
+    if (options->split_count > 0 && (options->split_axis < 0 || options->split_axis >= table->axis_count))
+        return lq_fail(error, LQ_BAD_INPUT, "axis %d to split; accepted are 0 to %d", options->split_axis,
+                       table->axis_count - 1);
     for (int i = 0; i < options->split_count; i++) {
         const lq_axis *axis = &table->axes[options->split_axis];
         const double at = options->splits[i], before = i > 0 ? options->splits[i - 1] : axis->min;
@@ -98,11 +114,7 @@ lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *optio
     return LQ_OK;
 }
 
-lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_options *options,
-                             lq_error *error) {
-    if (options->struct_size != sizeof *options)
-        return lq_fail(error, LQ_BAD_INPUT,
-                       "options of another version; start from lq_pca_options_default()");
+lq_status lq_pca_check_table(const lq_table *table, int channel, lq_error *error) {
     if (channel < 0 || channel >= table->channel_count)
         return lq_fail(error, LQ_BAD_INPUT, "channel %d; the table has %d", channel, table->channel_count);
     lq_status status = LQ_OK;
@@ -203,12 +215,14 @@ static lq_status add_piece(const lq_table *table, int channel, const lq_pca_opti
 
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error) {
+    lq_pca_options o;
     *factored = NULL;
-    lq_status status = lq_pca_check_options(table, options, error);
-    if (status == LQ_OK) status = lq_pca_check_table(table, channel, options, error);
+    lq_status status = lq_pca_options_read(&o, options, error);
+    if (status == LQ_OK) status = lq_pca_check_options(table, &o, error);
+    if (status == LQ_OK) status = lq_pca_check_table(table, channel, error);
     if (status == LQ_OK) status = lq_factored_start(table, channel, factored, error);
-    for (int p = 0; p <= options->split_count && status == LQ_OK; p++)
-        status = add_piece(table, channel, options, progress, *factored, error);
+    for (int p = 0; status == LQ_OK && p <= o.split_count; p++)
+        status = add_piece(table, channel, &o, progress, *factored, error);
     if (status == LQ_OK) status = lq_factored_check(*factored, error);
     if (status == LQ_OK) return LQ_OK;
     lq_factored_free(*factored);

@@ -20,8 +20,10 @@ lq_status lq_pca_check_options(const lq_table *table, const lq_pca_options *opti
 lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error);
 
 /* The channel and its values. */
-lq_status lq_pca_check_table(const lq_table *table, int channel, const lq_pca_options *options,
-                             lq_error *error);
+lq_status lq_pca_check_table(const lq_table *table, int channel, lq_error *error);
+
+/* `given`, of this version of the header or an older one, as options of this one. */
+lq_status lq_pca_options_read(lq_pca_options *options, const lq_pca_options *given, lq_error *error);
 
 /* The number of the first bases of the joint scheme that `options` asks for. */
 size_t lq_separated_bases(const lq_pca_options *options);

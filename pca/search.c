@@ -305,7 +305,7 @@ static void search_piece(search *s, const lq_pca_options *start, lq_piece *piece
 lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options *start,
                         const lq_pca_goal *goal, const lq_progress *progress, lq_factored **factored,
                         lq_pca_try **tries, size_t *try_count, lq_error *error) {
-    const int pieces = start->split_count + 1;
+    lq_pca_options o;
     bool met = true;
     *factored = NULL;
     *tries = NULL;
@@ -313,15 +313,17 @@ lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options
     if (goal->struct_size != sizeof *goal || !(goal->budget > 0.0 || goal->bytes > 0))
         return lq_fail(error, LQ_BAD_INPUT, "a search needs a budget or a number of bytes");
     lq_pca_goal each = *goal;
-    each.bytes /= (size_t)pieces;
     search s = {.table = table, .channel = channel, .goal = &each, .progress = progress, .error = error};
-    s.status = lq_pca_check_splits(table, start, error);
-    if (s.status == LQ_OK) s.status = lq_pca_check_table(table, channel, start, error);
+    s.status = lq_pca_options_read(&o, start, error);
+    if (s.status == LQ_OK) s.status = lq_pca_check_splits(table, &o, error);
+    if (s.status == LQ_OK) s.status = lq_pca_check_table(table, channel, error);
+    const int pieces = s.status == LQ_OK ? o.split_count + 1 : 1;
+    each.bytes /= (size_t)pieces;
     if (s.status == LQ_OK) s.status = lq_factored_start(table, channel, factored, error);
     for (s.piece = 0; s.piece < pieces && s.status == LQ_OK; s.piece++) {
         s.share = 1.0 / pieces;
         s.done = (double)s.piece / pieces;
-        search_piece(&s, start, &(*factored)->pieces[s.piece], &met);
+        search_piece(&s, &o, &(*factored)->pieces[s.piece], &met);
         if (s.status == LQ_OK) (*factored)->piece_count++;
     }
     *tries = s.tries;

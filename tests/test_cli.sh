@@ -46,7 +46,9 @@ small=(--axis mu=0:1:5 --axis alpha=0:1:4 --axis n=0.2:2:3 --axis kappa=1:4:3)
 run 0 --version
 grep -qE '^lacquer [0-9]+\.[0-9]+\.[0-9]+$' files/out || fail "--version: $(cat files/out)"
 run 0 --help
-for verb in list eval precompute fit validate info bench; do
+verbs=$(sed -n '/^Verbs:/,/^$/s/^  \([a-z-]*\) .*/\1/p' files/out)
+[ "$(wc -w <<<"$verbs")" -ge 9 ] || fail "--help shows few verbs: $verbs"
+for verb in $verbs; do
     run 0 --help
     grep -q "^  $verb " files/out || fail "--help does not show $verb"
     run 0 "$verb" --help
@@ -65,9 +67,95 @@ done
 refused 'no verb; known: list, eval'
 refused "unknown verb 'x'; known: list, eval, precompute, pca, fit, validate, pack, info, bench" x
 refused "unknown option '--x'" --x
-for verb in list eval precompute fit validate info bench; do
+for verb in $verbs; do
     refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense
+    refused "unknown option '-Z'; accepted: .*--help" "$verb" -Z
 done
+
+# ------------------------------------------------------- every option of every verb, from its help
+options_of() { # VERB: lines "name VALUE", no VALUE for a flag
+    "$LACQUER" "$1" --help | sed -nE 's/^  (-., |    )--([a-z0-9-]+) ?([^ ]*) .*/\2 \3/p' | grep -v '^help '
+}
+count=0
+for verb in $verbs; do
+    while read -r name value; do
+        count=$((count + 1))
+        case $value in
+        '') refused "option --$name takes no value" "$verb" "--$name=x" ;;
+        [A-EG-Z])
+            for bad in '' -1 nan 0x1p3; do
+                refused "^lacquer $verb: --$name: '$bad' is not a .*number from" "$verb" "--$name" "$bad"
+            done
+            refused "^lacquer $verb: --$name: '1x' is not a .*number from" "$verb" "--$name=1x"
+            ;;
+        *'|'*) refused "$name|no/such" "$verb" "--$name" no/such ;;
+        esac
+        [ -z "$value" ] || refused "option --$name needs a value" "$verb" "--$name"
+    done < <(options_of "$verb")
+done
+[ "$count" -ge 60 ] || fail "help shows few options: $count"
+
+# A value that an option takes.
+good() { # NAME VALUE
+    case $1 in
+    budget | tolerance | loss) echo 1e-3 ;;
+    bytes | samples) echo 1024 ;;
+    points) echo 16 ;;
+    range) echo 0.1:0.5 ;;
+    on) echo mu=0.1:0.5 ;;
+    ndf) echo ggx ;;
+    *)
+        case $2 in
+        ?) echo 2 ;;
+        *'|'*) echo "${2%%|*}" ;;
+        *) echo x ;;
+        esac
+        ;;
+    esac
+}
+
+# idle VERB OPTION... -- ARGUMENTS: in the mode of ARGUMENTS exactly these options are refused. Those not on
+# the list may do their work; ARGUMENTS are such that it cannot start, or (a last "only") they are not tried.
+idle() {
+    local verb=$1 list=' '
+    shift
+    while [ "$1" != -- ]; do
+        list+="$1 "
+        shift
+    done
+    shift
+    while read -r name value; do
+        local option=("--$name")
+        [ -z "$value" ] || option+=("$(good "$name" "$value")")
+        if [[ $list == *" $name "* ]]; then
+            refused "--$name has no effect .*; accepted there: " "$verb" "$@" "${option[@]}"
+            ! sed 's/.*accepted there//' files/err | grep -q -e "--$name," || fail "$verb: --$name is accepted"
+        elif [ -n "${tries:-}" ]; then
+            "$LACQUER" "$verb" "$@" "${option[@]}" >files/out 2>files/err </dev/null || true
+            ! grep -q 'has no effect' files/err || fail "$verb $* ${option[*]}: $(cat files/err)"
+        fi
+    done < <(options_of "$verb")
+}
+: >files/empty
+tries=yes
+idle eval ndf scattering masking tolerance threads orders -- --from files/empty
+idle info kind ndf -- files/empty
+idle pca separate scheme value bases critical texels -- files/empty --budget 1e-3 -o /proc/x
+idle fit texture samples -- hg -o /proc/x
+idle fit samples -- variance -o /proc/x
+idle fit report texture snippet -- bounces -o /proc/x
+idle fit report texture snippet family range points norm loss -- anisotropic -o /proc/x
+idle fit report texture snippet family range points norm loss samples -- transmitted -o /proc/x
+tries=
+certificate='certificate on table parts junit report'
+idle bench csv svg full scattering masking -- --report /proc/x
+idle validate against layout kind axes diagnose samples points seed budget $certificate \
+    scattering masking tolerance -- hard-cases
+idle validate against layout kind diagnose samples $certificate ndf scattering masking tolerance -- \
+    files/empty --axes files/empty
+idle validate layout kind samples $certificate ndf scattering masking tolerance -- files/empty --diagnose
+idle validate samples $certificate -- files/empty --layout tm --kind fgd
+idle validate ndf scattering masking tolerance kind -- files/empty
 refused 'no arguments' list fgd
 
 # -------------------------------------------------------------------------------------- eval
@@ -180,6 +268,13 @@ run 0 precompute fgd "${small[@]}" --threads 1 -o files/one.exr
 grep -qE '^files/one.exr: 180 entries, error at most ' files/out || fail "summary: $(cat files/out)"
 run 0 precompute fgd "${small[@]}" --threads 2 -o files/two.exr
 cmp files/one.exr files/two.exr || fail "the file depends on the number of threads"
+run 0 precompute fgd "${small[@]}" --threads=2 --format=exr -ofiles/two.exr
+cmp files/one.exr files/two.exr || fail "the file depends on how --threads is written"
+for threads in '--threads 1' --threads=2 '--csv=files/t.csv --svg=files/t.svg'; do
+    run 0 pca files/one.exr --separate n+kappa:2 --nodes-only --sweeps 2 $threads -o "files/pca${threads: -1}.exr"
+done
+cmp files/pca1.exr files/pca2.exr || fail "the factors depend on how --threads is written"
+cmp files/pca1.exr files/pcag.exr || fail "the factors depend on --csv=FILE"
 run 0 precompute fgd "${small[@]}" -o files/t.npy
 head -c 6 files/t.npy | grep -q NUMPY || fail "t.npy is no .npy file"
 

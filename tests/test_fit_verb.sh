@@ -58,9 +58,9 @@ cmp n.json n1.json || fail 'bounces depend on threads'
 grep -qE '^1.5000  1.00  0.10  1.0000  5.4[0-9]*e-03 .* 6.67[0-9]*e-03' out || fail "transmitted: $(cat out)"
 grep -qE '^2.0000  0.250000 .* 0.250000   2.000000' out || fail "the disc: $(cat out)"
 [ "$(grep -c '"eta"' lobes.json)" -eq 123 ] || fail 'lobes.json has not 120 lobes and 3 discs'
-refused '--samples is for' transmitted --samples 5000
+refused '--samples has no effect for transmitted' transmitted --samples 5000
 refused 'no NDF but ggx' anisotropic --ndf beckmann
-refused '--samples is for' tail --samples 5000 -o x.json
+refused '--samples has no effect for this mapping' tail --samples 5000 -o x.json
 
 # the snippet computes the same function, and its inverse goes back
 cat >use.c <<'C'
@@ -88,7 +88,7 @@ refused '0.0001 <= A < B < 1' variance --range 0.5:0.2 -o x.json
 refused '0.0001 <= A < B < 1' variance --range 0.5:nan -o x.json
 refused 'curve of NDF beckmann is inf at' variance --ndf beckmann --range 0.01:0.9 -o x.json
 refused 'has no limit at alpha = 0' variance --ndf gtr:gamma=1 -o x.json
-refused '--texture is for' hg --texture x.exr -o x.json
+refused '--texture has no effect for this mapping' hg --texture x.exr -o x.json
 refused 'cannot write' variance -o missing/x.json
 [ ! -e x.json ] || fail 'a refused fit left a file'
 # the engine without a problem, and with one that is not finite

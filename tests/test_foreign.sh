@@ -133,7 +133,7 @@ refused 'not a .npy file' validate no.npy --axes albedo.json
 cp albedo.json no.exr
 refused 'no.exr: cannot be read as EXR' validate no.exr --axes albedo.json
 refused 'no such|cannot read' validate gone.npy --axes albedo.json
-refused 'leave out --layout' validate albedo.npy --axes albedo.json --against albedo.npy
-refused 'albedo.json says how' validate albedo.npy --axes albedo.json --ndf ggx
+refused '--against has no effect with --axes' validate albedo.npy --axes albedo.json --against albedo.npy
+refused '--ndf has no effect with --axes, which says how FILE was made' validate albedo.npy --axes albedo.json --ndf ggx
 
 [ "$failures" -eq 0 ]

@@ -273,6 +273,18 @@ static void test_bad_options_are_refused(void **state) {
     bad.splits[0] = 1.5;
     refuse(table, bad, "nodes inside");
     bad = good;
+    bad.split_count = 1;
+    bad.split_axis = 4;
+    refuse(table, bad, "axis 4 to split; accepted are 0 to 3");
+    bad.split_axis = -1;
+    refuse(table, bad, "axis -1 to split");
+    bad.struct_size = 0; /* nothing else is looked at */
+    bad.split_axis = 1 << 20;
+    refuse(table, bad, "version");
+    bad.split_axis = 1;
+    bad.struct_size = sizeof bad + 8;
+    refuse(table, bad, "version");
+    bad = good;
     bad.power = 1.0;
     refuse(table, bad, "power");
     bad = good;

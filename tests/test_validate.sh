@@ -83,8 +83,8 @@ run 0 precompute coated-lambertian --axis mu=0.1,1 --axis alpha=0,0.3 --axis eta
     --axis rho=0,1 -o coated.exr
 run 0 validate coated.exr --against walk --points 12 --samples 2000
 
-refused 'hard-cases takes no --points' validate hard-cases --points 3
-refused 'hard-cases takes no --against' validate hard-cases --against walk
+refused '--points has no effect for hard-cases' validate hard-cases --points 3
+refused '--against has no effect for hard-cases' validate hard-cases --against walk
 
 # a Mitsuba file in one command, each of its parts against the solver: the cosine-weighted means are a quadrature
 # of the file's own, the kind diffuse-transmission another
@@ -161,7 +161,7 @@ refused 'needs --kind' validate tir.bin --layout belcour
 refused 'needs --layout' validate tir.exr --against tir.bin --kind tir-pass
 refused 'stores no tir-loss' validate tir.bin --layout belcour --kind tir-loss
 refused "is 'tir-loss', not 'tir-pass'" validate tir.exr --against loss.exr
-refused 'says itself how it was made' validate tir.exr --ndf ggx
+refused '--ndf has no effect without' validate tir.exr --ndf ggx
 refused 'not a belcour table of fgd' info tir.bin --layout belcour --kind fgd
 head -c 300 tir.bin >short.bin
 refused 'do not make up its length' validate tir.exr --against short.bin "${published[@]}"
@@ -188,7 +188,7 @@ grep -q '</html>' page/index.html || fail "the page is not whole"
 grep -q '<img src="albedo-average.svg"' page/index.html || fail "the page shows no chart"
 grep -qE '<td>walk</td><td>1e\+03</td><td>4</td>' page/index.html || fail "the page has no row of the walk"
 [ "$(grep -c ',walk,' page/albedo-average.csv)" -eq 1 ] || fail "--samples 1000 is not one walk"
-refused 'leave out --csv' bench --report page --csv x.csv
+refused '--csv has no effect with --report' bench --report page --csv x.csv
 refused 'cannot make the folder' bench --report nowhere/page
 refused 'unknown table' bench nonsense
 refused 'one TABLE' bench albedo fgd
