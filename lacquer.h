@@ -457,11 +457,13 @@ typedef struct lq_pca_options {
     double exponents[LQ_MAX_AXES]; /* of the map of the texels: 1 linear, 2 sqrt, ...; 0: that of the table */
     int split_axis, split_count;   /* pieces: the table is cut at nodes of one axis */
     double splits[LQ_MAX_PIECES - 1];
+    int threads; /* of a fit or a search; 0: one per core. Results do not depend on it. */
 } lq_pca_options;
 
 lq_pca_options lq_pca_options_default(void);
 
-/* Factor one channel of a table. */
+/* Factor one channel of a table. While it runs, BLAS of the process works on one thread a call; afterwards on
+ * as many as before. Several threads may factor tables at once. */
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error);
 

@@ -13,7 +13,7 @@
 
 #include "pca/factors.h"
 #include "pca/low_rank.h"
-#include "pca/refine_parts.h"
+#include "pca/refine_lines.h"
 #include "system/status.h"
 #include "tables/half.h"
 

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pca/blas.h"
 #include "system/status.h"
 
 enum {
@@ -19,20 +20,6 @@ enum {
     POWERS = 4, /* with SPARE, tables of these smooth functions are at the rms of the full SVD to 1e-3 */
     ROWS_A_TIME = 128 /* fixed, so that sums have one order for any number of threads */
 };
-
-void lq_blas_one_thread(void) {
-#ifdef OPENBLAS_VERSION
-    openblas_set_num_threads(1);
-#endif
-}
-
-bool lq_blas_reentrant(void) {
-#ifdef OPENBLAS_VERSION
-    return openblas_get_parallel() != 0;
-#else
-    return true;
-#endif
-}
 
 static double *matrix(size_t rows, size_t columns) {
     return calloc(rows * columns, sizeof(double));
@@ -179,7 +166,7 @@ lq_status lq_low_rank(const float *m, size_t rows, size_t columns, size_t rank, 
                       lq_error *error) {
     const size_t most = rows < columns ? rows : columns;
     subspace s = {.r = rank + SPARE < most ? rank + SPARE : most};
-    lq_blas_one_thread();
+    lq_blas_begin();
     s.v = malloc(columns * s.r * sizeof *s.v);
     s.u = malloc(rows * s.r * sizeof *s.u);
     s.basis = matrix(columns, s.r);
@@ -190,6 +177,7 @@ lq_status lq_low_rank(const float *m, size_t rows, size_t columns, size_t rank, 
         status = lq_fail(error, LQ_BAD_INPUT,
                          "no singular vectors of a %zu x %zu matrix: it holds infinities", rows, columns);
     if (status == LQ_OK) fix_signs(left, rows, right, columns, rank);
+    lq_blas_end();
     free(s.v);
     free(s.u);
     free(s.basis);
@@ -236,11 +224,12 @@ static bool turn_both(double *left, size_t rows, double *right, size_t columns, 
 lq_status lq_canonical(double *left, size_t rows, double *right, size_t columns, size_t rank,
                        lq_error *error) {
     double *space = matrix(rank, 4 * rank + 1 + rows + columns);
-    lq_blas_one_thread();
+    lq_blas_begin();
     lq_status status = space ? LQ_OK : no_memory(rows, rank, error);
     if (status == LQ_OK && !turn_both(left, rows, right, columns, rank, space))
         status = lq_fail(error, LQ_BAD_INPUT, "no singular vectors of a %zu x %zu product", rows, columns);
     if (status == LQ_OK) fix_signs(left, rows, right, columns, rank);
+    lq_blas_end();
     free(space);
     return status;
 }

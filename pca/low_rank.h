@@ -16,11 +16,4 @@ lq_status lq_low_rank(const float *m, size_t rows, size_t columns, size_t rank, 
 lq_status lq_canonical(double *left, size_t rows, double *right, size_t columns, size_t rank,
                        lq_error *error);
 
-/* One BLAS thread a call: the callers are parallel themselves, and sums keep their order. */
-void lq_blas_one_thread(void);
-
-/* Whether several threads may call BLAS at once: OpenBLAS built without threads shares its buffers unlocked,
- * and gives garbage then. */
-bool lq_blas_reentrant(void);
-
 #endif

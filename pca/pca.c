@@ -1,5 +1,6 @@
 /* pca.c - lq_pca: a table into factors, piece by piece. */
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -135,6 +136,9 @@ static lq_status check_numbers(const lq_pca_options *options, lq_error *error) {
     if (lq_separated_bases(options) > LQ_MAX_BASES && options->scheme == LQ_JOINT && options->bases[0] == 0)
         return lq_fail(error, LQ_BAD_INPUT, "%zu bases; accepted are 1 to %d", lq_separated_bases(options),
                        LQ_MAX_BASES);
+    if (options->threads < 0)
+        return lq_fail(error, LQ_BAD_INPUT, "%d threads; accepted are 0, one per core, and more",
+                       options->threads);
     if (options->pairs <= LQ_MAX_PAIRS && options->power >= 2.0 && options->power <= 64.0 &&
         options->sweeps >= 0)
         return LQ_OK;
@@ -213,6 +217,13 @@ static lq_status add_piece(const lq_table *table, int channel, const lq_pca_opti
                          error);
 }
 
+/* The number of threads of OpenMP loops belongs to the calling thread, not to the process. */
+int lq_pca_threads(int threads) {
+    const int before = omp_get_max_threads();
+    if (threads > 0) omp_set_num_threads(threads);
+    return before;
+}
+
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error) {
     lq_pca_options o;
@@ -221,8 +232,10 @@ lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *optio
     if (status == LQ_OK) status = lq_pca_check_options(table, &o, error);
     if (status == LQ_OK) status = lq_pca_check_table(table, channel, error);
     if (status == LQ_OK) status = lq_factored_start(table, channel, factored, error);
+    const int before = lq_pca_threads(o.threads);
     for (int p = 0; status == LQ_OK && p <= o.split_count; p++)
         status = add_piece(table, channel, &o, progress, *factored, error);
+    lq_pca_threads(before);
     if (status == LQ_OK) status = lq_factored_check(*factored, error);
     if (status == LQ_OK) return LQ_OK;
     lq_factored_free(*factored);

@@ -7,6 +7,7 @@
 #include "pca/assemble.h"
 #include "pca/factors.h"
 #include "pca/sequential.h"
+#include "pca/refine_start.h"
 #include "system/status.h"
 
 /* ------------------------------------------------------------------ texels */

@@ -19,15 +19,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pca/low_rank.h"
-#include "pca/refine_parts.h"
+#include "pca/blas.h"
+#include "pca/normal.h"
+#include "pca/refine_lines.h"
 #include "system/status.h"
 
 enum { CHUNK = 32 }; /* rows or columns a thread takes at a time: fixed, whatever the number of threads */
 
 static const double KEEP = 0.9; /* damping of the weights */
 static const double RATIO_MIN = 0.05, RATIO_MAX = 20.0;
-static const double RIDGE = 1e-5; /* of the diagonal: what the samples do not tell apart stays where it is */
 static const float STEP_MAX = 0.25f; /* of a stream in one step, where the slope says more */
 
 /* ------------------------------------------------------------------ samples */
@@ -110,48 +110,6 @@ static void outer_products(const double *v, size_t count, size_t bases, float *o
     for (size_t i = 0; i < count; i++)
         for (size_t a = 0; a < bases; a++)
             for (size_t b = a; b < bases; b++) *out++ = (float)(v[i * bases + a] * v[i * bases + b]);
-}
-
-/* step <- full^-1 step by the Cholesky factors of the upper triangle of `full`, which they replace. A few
- * hundred thousand systems of ten unknowns a sweep: LAPACK's call costs more than its work there. */
-static bool cholesky_solve(double *full, size_t n, double *step) {
-    for (size_t a = 0; a < n; a++) {
-        double *row = full + a * n;
-        if (!(row[a] > 0.0)) return false;
-        const double root = 1.0 / sqrt(row[a]);
-        for (size_t b = a; b < n; b++) row[b] *= root;
-        step[a] *= root;
-        for (size_t b = a + 1; b < n; b++) {
-            step[b] -= row[b] * step[a];
-            for (size_t c = b; c < n; c++) full[b * n + c] -= row[b] * row[c];
-        }
-    }
-    for (size_t a = n; a-- > 0;) {
-        for (size_t b = a + 1; b < n; b++) step[a] -= full[a * n + b] * step[b];
-        step[a] /= full[a * n + a];
-    }
-    return true;
-}
-
-/* Scaled to a unit diagonal first: bases differ in size by orders of magnitude, and single precision sums
- * hold each entry to some 1e-6 of the diagonal entries it belongs to. */
-bool lq_normal_solve(const float *packed, size_t n, double *full, double *step) {
-    double unit[LQ_MAX_BASES * LQ_MAX_PAIRS];
-    const float *entry = packed;
-    bool any = false;
-    for (size_t a = 0; a < n; entry += n - a, a++) {
-        unit[a] = *entry > 0.0f ? 1.0 / sqrt((double)*entry) : 0.0;
-        any = any || *entry > 0.0f;
-    }
-    if (!any) return false; /* nothing depends on it */
-    for (size_t a = 0; a < n; a++) {
-        step[a] *= unit[a];
-        for (size_t b = a; b < n; b++) full[a * n + b] = (double)*packed++ * unit[a] * unit[b];
-        full[a * n + a] = 1.0 + RIDGE;
-    }
-    if (!cholesky_solve(full, n, step)) return false;
-    for (size_t a = 0; a < n; a++) step[a] *= unit[a];
-    return true;
 }
 
 static size_t packed_size(size_t bases) {
@@ -443,11 +401,12 @@ lq_status lq_fit_refine(lq_fit *fit, int sweeps, bool only_p, const lq_progress 
     pass x;
     const size_t count = unknowns(fit);
     best b = {INFINITY, malloc(count * sizeof(double)), malloc(count * sizeof(double))};
-    lq_blas_one_thread();
+    lq_blas_begin();
     const bool made = pass_make(&x, fit, !only_p);
     const lq_status status = made && b.saved && b.last
                                  ? run_sweeps(&x, sweeps, only_p, progress, &b, error)
                                  : lq_fail(error, LQ_NO_MEMORY, "no memory to refine factors");
+    lq_blas_end();
     pass_free(&x);
     free(b.saved);
     free(b.last);
@@ -458,12 +417,13 @@ lq_status lq_fit_errors(const lq_fit *fit, double *largest, double *rms, lq_erro
     pass x;
     lq_fit plain = *fit;
     plain.power = 2.0;
-    lq_blas_one_thread();
+    lq_blas_begin();
     lq_status status = pass_make(&x, &plain, false) ? run_pass(&x, error)
                                                     : lq_fail(error, LQ_NO_MEMORY, "no memory for errors");
     *largest = 0.0;
     for (size_t i = 0; status == LQ_OK && i * CHUNK < fit->rows; i++) *largest = fmax(*largest, x.largest[i]);
     *rms = x.rms;
+    lq_blas_end();
     pass_free(&x);
     return status;
 }

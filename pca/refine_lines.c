@@ -1,9 +1,11 @@
 /* refine_lines.c - the separated side of a stream: free columns, or sums of products of two lines. */
+#include "pca/refine_lines.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "pca/low_rank.h"
-#include "pca/refine_parts.h"
+#include "pca/normal.h"
 #include "system/status.h"
 
 static size_t packed_at(size_t bases, size_t a, size_t b) {

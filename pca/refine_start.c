@@ -1,10 +1,12 @@
 /* refine_start.c - a fit before its first sweep: memory, and singular vectors of the transformed samples. */
+#include "pca/refine_start.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pca/low_rank.h"
-#include "pca/refine_parts.h"
+#include "pca/refine_lines.h"
 #include "system/status.h"
 
 lq_status lq_fit_create(lq_fit *fit, lq_error *error) {

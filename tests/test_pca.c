@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <cblas.h>
 #include <cmocka.h>
 #include <math.h>
 #include <omp.h>
@@ -207,10 +208,18 @@ static void test_threads_do_not_change_a_bit(void **state) {
     lq_pca_options options = separate(2, (int[]){3, 2}, (size_t[]){2, 3});
     options.sweeps = 5;
     lq_factored *factored[2];
+    const int threads = omp_get_max_threads();
+#ifdef OPENBLAS_VERSION
+    openblas_set_num_threads(2);
+#endif
     for (int i = 0; i < 2; i++) {
-        omp_set_num_threads(1 + 2 * i);
+        options.threads = 1 + 2 * i;
         assert_int_equal(lq_pca(table, 0, &options, NULL, &factored[i], NULL), LQ_OK);
     }
+    assert_int_equal(omp_get_max_threads(), threads); /* the caller's settings stay */
+#ifdef OPENBLAS_VERSION
+    assert_int_equal(openblas_get_num_threads(), 2);
+#endif
     for (int f = 0; f < factored[0]->pieces[0].factor_count; f++) {
         const lq_factor *a = &factored[0]->pieces[0].factors[f], *b = &factored[1]->pieces[0].factors[f];
         assert_memory_equal(a->data, b->data, lq_factor_texels(a) * a->base_count * sizeof(float));
@@ -287,6 +296,13 @@ static void test_bad_options_are_refused(void **state) {
     bad = good;
     bad.power = 1.0;
     refuse(table, bad, "power");
+    bad = good;
+    bad.threads = -1;
+    refuse(table, bad, "threads");
+    bad.struct_size = offsetof(lq_pca_options, threads); /* a header that had no such member */
+    lq_factored *factored;
+    assert_int_equal(lq_pca(table, 0, &bad, NULL, &factored, NULL), LQ_OK);
+    lq_factored_free(factored);
     bad = good;
     bad.struct_size = 8;
     refuse(table, bad, "version");

@@ -75,7 +75,7 @@ refused 'below 1 in one plane' pca t01.exr --separate tau,alpha --critical -o x.
 refused 'nodes inside' pca t01.exr --separate tau,eta --split eta=1.3 -o x.exr
 refused 'no table' pca -o x.exr
 refused 'no output file' pca t01.exr --separate tau,eta
-refused 'leave those options out' pca t01.exr --budget 1e-2 --separate tau,eta -o x.exr
+refused '--separate has no effect with --budget and --bytes' pca t01.exr --budget 1e-2 --separate tau,eta -o x.exr
 refused 'is not one of: sequential, joint' pca t01.exr --scheme tucker -o x.exr
 refused 'nothere.exr' pca nothere.exr --separate tau,eta -o x.exr
 refused 'is a folder' pca t01.exr --separate tau,eta -o .

@@ -108,7 +108,7 @@ static bool searches(const pca_request *r) {
 }
 
 static bool suits(const pca_request *r, const cli_given *given) {
-    if (searches(r)) return cli_suits(given, SEARCHED, "on --budget and --bytes, which search it");
+    if (searches(r)) return cli_suits(given, SEARCHED, "with --budget and --bytes, which search it");
     return cli_suits(given, ASKED, "without --budget and --bytes");
 }
 
@@ -260,7 +260,8 @@ static int run(int argc, char **argv) {
     lq_error error = {""};
     lq_table *table = NULL, *against = NULL;
     if (!read_arguments(&r, &given, argc, argv)) return CLI_FAILED;
-    omp_set_num_threads(r.threads > 0 ? (int)r.threads : omp_get_num_procs());
+    omp_set_num_threads(r.threads > 0 ? (int)r.threads : omp_get_num_procs()); /* also of the errors */
+    r.options.threads = (int)r.threads;
     lq_status status = lq_table_read_exr(&table, r.input, &error);
     if (status == LQ_OK && r.against) status = lq_table_read_exr(&against, r.against, &error);
     r.command = cli_command(&given, &r, r.input);

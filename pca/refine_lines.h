@@ -1,12 +1,8 @@
-/* refine_parts.h - the small systems of refine.c. */
-#ifndef LACQUER_PCA_REFINE_PARTS_H
-#define LACQUER_PCA_REFINE_PARTS_H
+/* refine_lines.h - the separated side of a stream: free columns, or sums of products of two lines. */
+#ifndef LACQUER_PCA_REFINE_LINES_H
+#define LACQUER_PCA_REFINE_LINES_H
 
-#include "pca/refine.h"
-
-/* step <- normal^-1 step for a packed symmetric n x n matrix; `full` has room for n x n. False: nothing to
- * solve, or no solution. */
-bool lq_normal_solve(const float *packed, size_t n, double *full, double *step);
+#include "pca/stream.h"
 
 /* Move q (or its lines) by the solution of its normal equations, of which each column has one. `right` is
  * changed. */
