@@ -316,6 +316,14 @@ lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double
 lq_status lq_precompute(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
                         const lq_progress *progress, lq_table **table, lq_error *error);
 
+/* All of a Mitsuba 0.6 .dat (lq_mitsuba_write) computed and written: transmission seen from outside over
+ * `axes` (mu, alpha, eta, tau: lq_mitsuba_axes gives those of the published files in place of what `axes`
+ * holds), from inside over their 1/eta, and cosine-weighted means. `entries` and `estimate`, the largest
+ * error estimate, are of all of them. LQ_NOT_CONVERGED: written, but above the tolerance. */
+lq_status lq_mitsuba_axes(lq_axis *axes, lq_error *error);
+lq_status lq_mitsuba_precompute(const lq_settings *settings, const lq_axis *axes, const lq_progress *progress,
+                                const char *path, size_t *entries, double *estimate, lq_error *error);
+
 /* The default axes of a kind. Free each with lq_axis_free. */
 lq_status lq_kind_axes(const lq_kind *kind, lq_axis *axes, lq_error *error);
 /* The same for the NDF of these settings: where it has only some roughnesses, alpha runs over those, and

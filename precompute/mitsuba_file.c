@@ -1,18 +1,14 @@
-/* mitsuba.c - `lacquer precompute transmission --format mitsuba`: one file of three tables.
- */
-#include "program/precompute/mitsuba.h"
+/* mitsuba_file.c - the three tables of a Mitsuba transmittance file, computed and written in one go. */
+#include <math.h>
+#include <stdlib.h>
 
 #include "microfacet/gauss.h"
-#include "program/progress.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include "system/status.h"
 
 enum { MU, ALPHA, ETA, TAU, AXES };
 enum { OUTSIDE, INSIDE, AT_MEANS, PARTS };
 
-lq_status precompute_mitsuba_axes(lq_axis *axes, lq_error *error) {
+lq_status lq_mitsuba_axes(lq_axis *axes, lq_error *error) {
     static const char *const nodes[AXES] = {"0:1:64:power4", "0:1:32:power4", "1:4:32:power4", "1"};
     static const char *const names[AXES] = {"mu", "alpha", "eta", "tau"};
     lq_status status = LQ_OK;
@@ -34,10 +30,7 @@ static lq_status make_mean_axis(lq_axis *axis, const lq_gauss *rule, lq_error *e
 
 static lq_status make_inside_axis(lq_axis *axis, const lq_axis *eta, lq_error *error) {
     double *nodes = malloc(eta->size * sizeof *nodes);
-    if (!nodes) {
-        snprintf(error->text, sizeof error->text, "no memory for an axis");
-        return LQ_NO_MEMORY;
-    }
+    if (!nodes) return lq_fail(error, LQ_NO_MEMORY, "no memory for an axis of %zu nodes", eta->size);
     for (size_t i = 0; i < eta->size; i++) nodes[i] = 1.0 / eta->nodes[eta->size - 1 - i];
     const lq_status status = lq_axis_make_custom(axis, "eta", nodes, eta->size, error);
     free(nodes);
@@ -61,13 +54,24 @@ static lq_status take_means(const lq_table *at, const lq_gauss *rule, lq_table *
     return status;
 }
 
-static lq_status compute_part(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
-                              lq_table **table, double *estimate, lq_error *error) {
-    static const char label[] = "mitsuba";
-    cli_progress bar;
-    cli_progress_begin(&bar, label);
-    const lq_status status = lq_precompute(kind, settings, axes, &bar.progress, table, error);
-    cli_progress_end(&bar);
+/* Progress of one part among all. */
+typedef struct share {
+    const lq_progress *whole;
+    int part;
+} share;
+
+static bool report_share(void *user, double fraction) {
+    const share *s = user;
+    return s->whole->report(s->whole->user, (s->part + fraction) / PARTS);
+}
+
+static lq_status compute_part(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes, int part,
+                              const lq_progress *progress, lq_table **table, double *estimate,
+                              lq_error *error) {
+    share mine = {progress, part};
+    const lq_progress shared = {report_share, &mine};
+    const lq_status status =
+        lq_precompute(kind, settings, axes, progress && progress->report ? &shared : NULL, table, error);
     const char *fact = *table ? lq_table_fact(*table, "error") : NULL;
     *estimate = fmax(*estimate, fact ? strtod(fact, NULL) : 0.0);
     return status;
@@ -77,33 +81,50 @@ static bool holds(lq_status status) {
     return status == LQ_OK || status == LQ_NOT_CONVERGED;
 }
 
-lq_status precompute_mitsuba(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
-                             const char *path, size_t *entries, double *estimate, lq_error *error) {
-    lq_table *parts[PARTS] = {NULL}, *means = NULL;
+/* `over` says where each part is computed; LQ_NOT_CONVERGED: all are there, some above the tolerance. */
+static lq_status compute_parts(const lq_settings *settings, const lq_axis over[PARTS][AXES],
+                               const lq_progress *progress, lq_table **parts, double *estimate,
+                               lq_error *error) {
+    const lq_kind *kind = lq_kind_find("transmission", error);
+    lq_status worst = kind ? LQ_OK : LQ_BAD_INPUT;
+    *estimate = 0.0;
+    for (int p = 0; holds(worst) && p < PARTS; p++) {
+        const lq_status status =
+            compute_part(kind, settings, over[p], p, progress, &parts[p], estimate, error);
+        if (status != LQ_OK) worst = status;
+    }
+    return worst;
+}
+
+static lq_status write_parts(lq_table *const *parts, const lq_gauss *rule, const char *path, size_t *entries,
+                             lq_error *error) {
+    lq_table *means = NULL;
+    lq_status status = take_means(parts[AT_MEANS], rule, &means, error);
+    if (status == LQ_OK) status = lq_mitsuba_write(parts[OUTSIDE], parts[INSIDE], means, path, error);
+    if (status == LQ_OK)
+        *entries =
+            lq_table_entries(parts[OUTSIDE]) + lq_table_entries(parts[INSIDE]) + 2 * lq_table_entries(means);
+    lq_table_free(means);
+    return status;
+}
+
+lq_status lq_mitsuba_precompute(const lq_settings *settings, const lq_axis *axes, const lq_progress *progress,
+                                const char *path, size_t *entries, double *estimate, lq_error *error) {
+    lq_table *parts[PARTS] = {NULL};
     lq_axis inside = {.size = 0}, cosines = {.size = 0};
     lq_gauss rule;
     lq_gauss_make(&rule, MEAN_NODES);
-    lq_status status = make_inside_axis(&inside, &axes[ETA], error);
+    lq_status status = make_inside_axis(&inside, &axes[ETA], error), written = LQ_OK;
     if (status == LQ_OK) status = make_mean_axis(&cosines, &rule, error);
     const lq_axis over[PARTS][AXES] = {
         [OUTSIDE] = {axes[MU], axes[ALPHA], axes[ETA], axes[TAU]},
         [INSIDE] = {axes[MU], axes[ALPHA], inside, axes[TAU]},
         [AT_MEANS] = {cosines, axes[ALPHA], axes[ETA], axes[TAU]},
     };
-    lq_status worst = status;
-    *estimate = 0.0;
-    *entries = 0;
-    for (int p = 0; holds(worst) && p < PARTS; p++) {
-        status = compute_part(kind, settings, over[p], &parts[p], estimate, error);
-        if (status != LQ_OK) worst = status;
-        if (p != AT_MEANS && parts[p]) *entries += lq_table_entries(parts[p]);
-    }
-    status = holds(worst) ? take_means(parts[AT_MEANS], &rule, &means, error) : worst;
-    if (status == LQ_OK) *entries += 2 * lq_table_entries(means);
-    if (status == LQ_OK) status = lq_mitsuba_write(parts[OUTSIDE], parts[INSIDE], means, path, error);
+    if (status == LQ_OK) status = compute_parts(settings, over, progress, parts, estimate, error);
+    if (holds(status)) written = write_parts(parts, &rule, path, entries, error);
     for (int p = 0; p < PARTS; p++) lq_table_free(parts[p]);
-    lq_table_free(means);
     lq_axis_free(&inside);
     lq_axis_free(&cosines);
-    return status == LQ_OK ? worst : status;
+    return written == LQ_OK ? status : written;
 }

@@ -4,7 +4,6 @@
 #include "program/message.h"
 #include "program/options.h"
 #include "program/output.h"
-#include "program/precompute/mitsuba.h"
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/verb.h"
@@ -140,7 +139,7 @@ static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis
     bool given[LQ_MAX_AXES] = {false};
     lq_error error = {""};
     lq_status status = lq_settings_axes(kind, &request->settings.settings, axes, &error);
-    if (status == LQ_OK && is_mitsuba(request, kind)) status = precompute_mitsuba_axes(axes, &error);
+    if (status == LQ_OK && is_mitsuba(request, kind)) status = lq_mitsuba_axes(axes, &error);
     if (status != LQ_OK) {
         cli_message("%s", error.text);
         return false;
@@ -196,13 +195,16 @@ static bool format_suits(const table_request *request, const lq_kind *kind, cons
 }
 
 /* All of a Mitsuba file at once: three tables make one. */
-static int precompute_file(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
+static int precompute_file(const table_request *request, const lq_axis *axes) {
     lq_error error = {""};
     size_t entries;
     double estimate;
     const double start = cli_seconds();
-    const lq_status status = precompute_mitsuba(kind, &request->settings.settings, axes, request->output,
-                                                &entries, &estimate, &error);
+    cli_progress bar;
+    cli_progress_begin(&bar, "mitsuba");
+    const lq_status status = lq_mitsuba_precompute(&request->settings.settings, axes, &bar.progress,
+                                                   request->output, &entries, &estimate, &error);
+    cli_progress_end(&bar);
     if (status != LQ_OK && status != LQ_NOT_CONVERGED) return cli_fail_status(status, &error);
     printf("%s: %zu entries, error at most %.3g, %.3g s\n", request->output, entries, estimate,
            cli_seconds() - start);
@@ -249,7 +251,7 @@ static int run(int argc, char **argv) {
     if (format_suits(&request, kind, axes)) {
         request.command = cli_command(&given, &request, request.table);
         if (!request.command) code = cli_fail("out of memory");
-        else if (is_mitsuba(&request, kind)) code = precompute_file(&request, kind, axes);
+        else if (is_mitsuba(&request, kind)) code = precompute_file(&request, axes);
         else code = precompute(&request, kind, axes);
     }
     free(request.command);
