@@ -82,10 +82,8 @@ static lq_status read_channel(const lq_recipe_reader *r, json_t *pca, lq_recipe_
     const char *name = text_of(r, pca, "channel", "a channel of the table", &status);
     char accepted[LQ_MESSAGE_SIZE] = "";
     for (table->channel = 0; name && table->channel < kind->channel_count; table->channel++) {
-        const size_t used = strlen(accepted);
         if (strcmp(name, kind->channels[table->channel]) == 0) return LQ_OK;
-        snprintf(accepted + used, sizeof accepted - used, "%s%s", used > 0 ? ", " : "",
-                 kind->channels[table->channel]);
+        lq_list_add(accepted, sizeof accepted, kind->channels[table->channel]);
     }
     return name ? lq_refuse_word(r, "channel", name, accepted) : status;
 }

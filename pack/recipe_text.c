@@ -94,9 +94,8 @@ lq_status lq_recipe_choice(const lq_recipe_reader *r, json_t *object, const char
     char accepted[64] = "";
     if (!item) return LQ_OK;
     for (int i = 0; choices[i]; i++) {
-        const size_t used = strlen(accepted);
         if (word && strcmp(word, choices[i]) == 0) return *choice = i, LQ_OK;
-        snprintf(accepted + used, sizeof accepted - used, "%s%s", i > 0 ? ", " : "", choices[i]);
+        lq_list_add(accepted, sizeof accepted, choices[i]);
     }
     return word ? lq_refuse_word(r, key, word, accepted) : lq_refuse_value(r, key, accepted);
 }

@@ -14,8 +14,7 @@ static lq_status find_axis(const char *name, size_t length, const lq_axis *axes,
     for (*found = 0; *found < axis_count; ++*found) {
         const char *axis = axes[*found].name;
         if (strlen(axis) == length && strncmp(axis, name, length) == 0) return LQ_OK;
-        const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", axis);
+        lq_list_add(list, sizeof list, axis);
     }
     return lq_fail(error, LQ_BAD_INPUT, "unknown axis '%.*s'; the table has: %s", (int)length, name, list);
 }

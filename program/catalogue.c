@@ -3,10 +3,11 @@
 
 #include "lacquer.h"
 #include "program/options.h"
+#include "system/status.h"
 
 static void print_table(FILE *out, const lq_kind *kind) {
     char axes[LQ_MAX_AXES * (LQ_NAME_SIZE + 2)] = "";
-    for (int i = 0; i < kind->axis_count; i++) cli_join(axes, sizeof axes, kind->axes[i].name);
+    for (int i = 0; i < kind->axis_count; i++) lq_list_add(axes, sizeof axes, kind->axes[i].name);
     fprintf(out, "  %-15s %-22s %s\n", kind->id, axes, kind->title);
 }
 

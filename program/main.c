@@ -4,6 +4,7 @@
 #include "program/options.h"
 #include "program/progress.h"
 #include "program/verb.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -45,7 +46,7 @@ static void print_usage(void) {
 
 static void list_verbs(char *list, size_t size) {
     list[0] = '\0';
-    for (size_t i = 0; cli_verb_at(i); i++) cli_join(list, size, cli_verb_at(i)->name);
+    for (size_t i = 0; cli_verb_at(i); i++) lq_list_add(list, size, cli_verb_at(i)->name);
 }
 
 static bool is_help(const char *word) {

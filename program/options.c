@@ -3,17 +3,13 @@
 #include "program/options.h"
 
 #include "program/message.h"
+#include "system/status.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-void cli_join(char *list, size_t size, const char *word) {
-    size_t used = strlen(list);
-    snprintf(list + used, size - used, "%s%s", used > 0 ? ", " : "", word);
-}
 
 /* ======================================================================================
  *                                       Arguments
@@ -46,9 +42,9 @@ static void accepted_options(const cli_verb *verb, unsigned mode, char *list, si
         if (mode && option->modes && !(option->modes & mode)) continue;
         if (is_letter(option->id)) snprintf(text, sizeof text, "-%c/", option->id);
         snprintf(text + strlen(text), sizeof text - strlen(text), "--%s", option->name);
-        cli_join(list, size, text);
+        lq_list_add(list, size, text);
     }
-    cli_join(list, size, "--help");
+    lq_list_add(list, size, "--help");
 }
 
 static bool refuse_unknown(const cli_verb *verb, const char *text) {
@@ -253,7 +249,7 @@ int cli_parse_choice(const char *what, const char *text, const char *const *choi
     char list[LQ_MESSAGE_SIZE] = "";
     for (size_t i = 0; i < count; i++) {
         if (strcmp(text, choices[i]) == 0) return (int)i;
-        cli_join(list, sizeof list, choices[i]);
+        lq_list_add(list, sizeof list, choices[i]);
     }
     cli_message("%s: '%s' is not one of: %s", what, text, list);
     return -1;

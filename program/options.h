@@ -42,7 +42,4 @@ int cli_parse_choice(const char *what, const char *text, const char *const *choi
 /* Print the help of a verb to stdout. */
 void cli_print_help(const cli_verb *verb);
 
-/* Append `word` to the comma-separated list in `list` (size bytes, at first an empty string). */
-void cli_join(char *list, size_t size, const char *word);
-
 #endif

@@ -7,6 +7,7 @@
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/verb.h"
+#include "system/status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -97,7 +98,7 @@ static int find_axis(const lq_kind *kind, const char *text) {
     for (int i = 0; i < kind->axis_count; i++) {
         const char *name = kind->axes[i].name;
         if (strlen(name) == length && strncmp(name, text, length) == 0) return i;
-        cli_join(list, sizeof list, name);
+        lq_list_add(list, sizeof list, name);
     }
     cli_message("--axis: unknown axis '%.*s'; %s has: %s", (int)length, text, kind->id, list);
     return -1;

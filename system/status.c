@@ -38,3 +38,8 @@ lq_status lq_fail(lq_error *error, lq_status status, const char *format, ...) {
     memcpy(error->text, text, length + 1);
     return status;
 }
+
+void lq_list_add(char *list, size_t size, const char *word) {
+    const size_t used = strlen(list);
+    snprintf(list + used, size - used, "%s%s", used > 0 ? ", " : "", word);
+}

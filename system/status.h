@@ -10,4 +10,8 @@
 lq_status lq_fail(lq_error *error, lq_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Append `word` to a comma-separated list of what is accepted, at first an empty string of `size` bytes; what
+ * does not fit is cut. */
+void lq_list_add(char *list, size_t size, const char *word);
+
 #endif

@@ -254,10 +254,9 @@ const lq_kind *lq_kind_at(size_t i) {
 
 const lq_kind *lq_kind_find(const char *id, lq_error *error) {
     char known[512] = "";
-    for (size_t i = 0, used = 0; i < lq_kind_count(); i++) {
+    for (size_t i = 0; i < lq_kind_count(); i++) {
         if (strcmp(kinds[i].id, id) == 0) return &kinds[i];
-        if (used < sizeof known)
-            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", kinds[i].id);
+        lq_list_add(known, sizeof known, kinds[i].id);
     }
     lq_fail(error, LQ_BAD_INPUT, "unknown table '%s'; known: %s", id, known);
     return NULL;

@@ -48,8 +48,7 @@ static const lq_stored *find(lq_layout layout, const char *kind, lq_error *error
     for (int i = 0; i < STORED; i++) {
         if (all[i].layout != layout) continue;
         if (strcmp(all[i].kind, kind) == 0) return &all[i];
-        const size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", all[i].kind);
+        lq_list_add(known, sizeof known, all[i].kind);
     }
     lq_fail(error, LQ_BAD_INPUT, "layout %s stores no %s; it stores: %s", layout_names[layout], kind, known);
     return NULL;

@@ -63,7 +63,7 @@ int eval_find_axis(const eval_source *source, const char *name, lq_error *error)
     char list[LQ_MESSAGE_SIZE] = "";
     for (int i = 0; i < source->axis_count; i++) {
         if (strcmp(name, source->axes[i].name) == 0) return i;
-        cli_join(list, sizeof list, source->axes[i].name);
+        lq_list_add(list, sizeof list, source->axes[i].name);
     }
     lq_fail(error, LQ_BAD_INPUT, "unknown axis '%s'; %s has: %s", name, source_name(source), list);
     return -1;
@@ -96,7 +96,7 @@ bool eval_complete(const eval_source *source, const eval_point *point, lq_error 
     char list[LQ_MESSAGE_SIZE] = "";
     for (int i = 0; i < source->axis_count; i++)
         if (!point->given[i] && source->axes[i].lowest < source->axes[i].highest)
-            cli_join(list, sizeof list, source->axes[i].name);
+            lq_list_add(list, sizeof list, source->axes[i].name);
     if (list[0]) lq_fail(error, LQ_BAD_INPUT, "missing axis values for %s: %s", source_name(source), list);
     return list[0] == '\0';
 }

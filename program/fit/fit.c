@@ -6,6 +6,7 @@
 #include "program/output.h"
 #include "program/settings.h"
 #include "program/verb.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,7 +116,8 @@ static bool find_family(fit_request *request) {
     if (request->family >= 0) return true;
     char list[LQ_MESSAGE_SIZE] = "";
     for (int i = 0; i < LQ_FAMILIES; i++)
-        if (lq_family_at(i)->mapping == request->mapping) cli_join(list, sizeof list, lq_family_at(i)->name);
+        if (lq_family_at(i)->mapping == request->mapping)
+            lq_list_add(list, sizeof list, lq_family_at(i)->name);
     cli_message("--family: '%s' is not one of: %s", request->family_name, list);
     return false;
 }

@@ -6,6 +6,7 @@
 #include "pca/options_text.h"
 #include "program/message.h"
 #include "program/options.h"
+#include "system/status.h"
 
 static bool find_channel(const pca_request *request, const lq_table *table, int *channel) {
     char list[LQ_MESSAGE_SIZE] = "";
@@ -13,7 +14,7 @@ static bool find_channel(const pca_request *request, const lq_table *table, int 
     if (!request->channel) return true;
     for (; *channel < table->channel_count; ++*channel) {
         if (strcmp(table->channel_names[*channel], request->channel) == 0) return true;
-        cli_join(list, sizeof list, table->channel_names[*channel]);
+        lq_list_add(list, sizeof list, table->channel_names[*channel]);
     }
     cli_message("--channel: unknown channel '%s'; the table has: %s", request->channel, list);
     return false;

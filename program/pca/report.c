@@ -1,5 +1,6 @@
 /* report.c - what `lacquer pca` says about what it tried: a table, CSV, SVG. */
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,27 +12,30 @@
 
 static const char *const value_names[LQ_VALUES] = {"plain", "square", "beer"};
 
+/* Append to a text of `size` bytes; what does not fit is cut. */
+__attribute__((format(printf, 3, 4))) static void append(char *text, size_t size, const char *format, ...) {
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
 void pca_describe(const lq_table *table, const lq_pca_options *o, char *text, size_t size) {
-    FILE *out = fmemopen(text, size, "w");
-    if (!out) {
-        text[0] = '\0';
-        return;
-    }
-    fputs(o->scheme == LQ_SEQUENTIAL ? "sequential" : value_names[o->value], out);
+    snprintf(text, size, "%s", o->scheme == LQ_SEQUENTIAL ? "sequential" : value_names[o->value]);
     for (int i = 0; i < o->separation_count; i++) {
-        fputc(i > 0 ? '|' : ' ', out);
+        append(text, size, i > 0 ? "|" : " ");
         for (int j = 0; j < o->separations[i].axis_count; j++)
-            fprintf(out, "%s%s", j > 0 ? "+" : "", table->axes[o->separations[i].axes[j]].name);
-        if (o->scheme == LQ_SEQUENTIAL || o->bases[0] == 0) fprintf(out, ":%zu", o->separations[i].bases);
+            append(text, size, "%s%s", j > 0 ? "+" : "", table->axes[o->separations[i].axes[j]].name);
+        if (o->scheme == LQ_SEQUENTIAL || o->bases[0] == 0)
+            append(text, size, ":%zu", o->separations[i].bases);
     }
-    if (o->scheme == LQ_JOINT && o->bases[0] > 0) fprintf(out, " %zu", o->bases[0]);
-    if (o->scheme == LQ_JOINT && o->value == LQ_VALUE_BEER) fprintf(out, "+%zu", o->bases[1]);
-    if (o->scheme == LQ_JOINT && o->separation_count > 1) fprintf(out, " pairs %zu", o->pairs);
-    if (o->critical) fputs(" critical", out);
+    if (o->scheme == LQ_JOINT && o->bases[0] > 0) append(text, size, " %zu", o->bases[0]);
+    if (o->scheme == LQ_JOINT && o->value == LQ_VALUE_BEER) append(text, size, "+%zu", o->bases[1]);
+    if (o->scheme == LQ_JOINT && o->separation_count > 1) append(text, size, " pairs %zu", o->pairs);
+    if (o->critical) append(text, size, " critical");
     for (int a = 0; a < table->axis_count; a++)
-        if (o->texels[a] > 0) fprintf(out, " %s=%zu", table->axes[a].name, o->texels[a]);
-    fclose(out);
-    text[size - 1] = '\0';
+        if (o->texels[a] > 0) append(text, size, " %s=%zu", table->axes[a].name, o->texels[a]);
 }
 
 /* ------------------------------------------------------------------ stdout */
