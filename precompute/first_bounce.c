@@ -14,7 +14,13 @@ typedef struct sums {
     double area_in, mu_in; /* of the incident direction, as G wants them */
     double total;          /* of all weights: sigma(v) */
     double *escaping, *remaining;
+    double *shares; /* of `escaping`: SHARES a curve; NULL: not wanted */
+    int panel_fans, fans;
 } sums;
+
+/* The integral is kept in parts, that of panel p of d in part p % SHARES: differences between two levels that
+ * cancel in the sum show in the parts. */
+enum { SHARES = 32 };
 
 static void add_fan(void *user, const lq_fan *fan) {
     sums *s = user;
@@ -29,23 +35,33 @@ static void add_fan(void *user, const lq_fan *fan) {
     for (int k = 0; k < s->curves->count; k++) {
         s->escaping[k] += curve[k] * leaves;
         s->remaining[k] += curve[k] * (all - leaves);
+        if (s->shares) s->shares[k * SHARES + s->fans / s->panel_fans % SHARES] += curve[k] * leaves;
     }
+    s->fans++;
 }
 
-void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
-                     const lq_facet_rule *rule, double *escaping, double *remaining) {
+static void integrate(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
+                      const lq_facet_rule *rule, double *escaping, double *remaining, double *shares) {
     const double sine = lq_sine(mu);
-    sums s = {ndf, curves, lq_solver_kernels_get(), alpha, 1.0, 1.0, 0.0, escaping, remaining};
+    sums s = {ndf,       curves, lq_solver_kernels_get(), alpha, 1.0, 1.0, 0.0, escaping,
+              remaining, shares, rule->outer.count,       0};
     if (masking == LQ_CORRELATED) {
         s.area_in = lq_area_above(ndf, alpha, mu, sine);
         s.mu_in = mu;
     }
     for (int k = 0; k < curves->count; k++) escaping[k] = remaining[k] = 0.0;
+    for (int i = 0; shares && i < curves->count * SHARES; i++) shares[i] = 0.0;
     lq_facets_visit(ndf, alpha, mu, sine, rule, &curves->panels, add_fan, &s);
     for (int k = 0; k < curves->count; k++) {
         escaping[k] /= s.total;
         remaining[k] /= s.total;
     }
+    for (int i = 0; shares && i < curves->count * SHARES; i++) shares[i] /= s.total;
+}
+
+void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
+                     const lq_facet_rule *rule, double *escaping, double *remaining) {
+    integrate(ndf, alpha, masking, mu, curves, rule, escaping, remaining, NULL);
 }
 
 /* Nodes per panel of d, and per piece of azimuth, from coarse to fine. Both grow from row to row, or the
@@ -53,24 +69,50 @@ void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double
 static const int resolutions[][2] = {{6, 8}, {8, 12}, {12, 16}, {16, 24}, {24, 32}, {32, 48}, {48, 64}};
 enum { RESOLUTIONS = sizeof resolutions / sizeof resolutions[0] };
 
+/* The largest change of a curve between two levels, the changes of its parts added up without their signs. */
+static double change_of(const double *shares, const double *before, int curves) {
+    double most = 0.0;
+    for (int k = 0; k < curves; k++) {
+        double change = 0.0;
+        for (int p = k * SHARES; p < (k + 1) * SHARES; p++) change += fabs(shares[p] - before[p]);
+        most = fmax(most, change);
+    }
+    return most;
+}
+
+/* The difference of two totals is no measure: it changes sign along mu and alpha, and near a zero of it said
+ * nothing (of 5,000 points of Beckmann 55 were off by more than twice the difference, one by 44 times). Parts
+ * do not cancel; where the azimuth alone is not resolved they may still agree by chance, which the older
+ * change guards, and at the first level, that has none, a larger factor. Distributions whose tails are not
+ * GGX's, for which the azimuth is mapped, need both. */
+double lq_first_bounce_estimate(double change, double older) {
+    return older > 0.0 ? fmax(2.0 * change, 0.2 * older) : 6.0 * change;
+}
+
+static double converge(const lq_ndf *ndf, double alpha, lq_masking masking, double mu,
+                       const lq_curves *curves, double tolerance, const lq_facet_rule *rules,
+                       double *escaping) {
+    double shares[2][LQ_CURVES_MAX * SHARES], remaining[LQ_CURVES_MAX], estimate = INFINITY, older = 0.0;
+    for (int level = 0; level < RESOLUTIONS && estimate > tolerance; level++) {
+        double *now = shares[level % 2], *before = shares[1 - level % 2];
+        integrate(ndf, alpha, masking, mu, curves, &rules[level], escaping, remaining, now);
+        if (level == 0) continue;
+        const double change = change_of(now, before, curves->count);
+        estimate = fmax(lq_first_bounce_estimate(change, older), 0.1 * tolerance);
+        older = change;
+    }
+    return estimate;
+}
+
 double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking masking, const double *mu,
                                  size_t count, const lq_curves *curves, double tolerance, double *escaping) {
-    double estimate = INFINITY;
-    for (int level = 0; level < RESOLUTIONS && estimate > tolerance; level++) {
-        lq_facet_rule rule;
-        lq_facet_rule_make(&rule, resolutions[level][0], resolutions[level][1]);
-        double change = 0.0;
-        for (size_t m = 0; m < count; m++) {
-            double now[LQ_CURVES_MAX], remaining[LQ_CURVES_MAX];
-            lq_first_bounce(ndf, alpha, masking, mu[m], curves, &rule, now, remaining);
-            for (int k = 0; k < curves->count; k++) {
-                double *kept = escaping + m * (size_t)curves->count + k;
-                if (level > 0) change = fmax(change, fabs(now[k] - *kept));
-                *kept = now[k];
-            }
-        }
-        if (level > 0) estimate = fmax(2.0 * change, 0.1 * tolerance);
-    }
+    double estimate = 0.0;
+    lq_facet_rule rules[RESOLUTIONS];
+    for (int level = 0; level < RESOLUTIONS; level++)
+        lq_facet_rule_make(&rules[level], resolutions[level][0], resolutions[level][1]);
+    for (size_t m = 0; m < count; m++)
+        estimate = fmax(estimate, converge(ndf, alpha, masking, mu[m], curves, tolerance, rules,
+                                           escaping + m * (size_t)curves->count));
     return estimate;
 }
 

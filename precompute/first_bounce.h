@@ -25,9 +25,14 @@ double lq_smooth_masking_error(double alpha, const double *mu, size_t count);
 void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
                      const lq_facet_rule *rule, double *escaping, double *remaining);
 
-/* `escaping` for `count` cosines, [mu * curves->count + k], at increasing resolution until two in a row
- * differ by at most `tolerance` everywhere. Returns the last difference: the error estimate. */
+/* `escaping` for `count` cosines, [mu * curves->count + k], each at increasing resolution until its error
+ * estimate, from the changes of the parts of its integral, is at most `tolerance`. Returns the largest
+ * estimate. */
 double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking masking, const double *mu,
                                  size_t count, const lq_curves *curves, double tolerance, double *escaping);
+
+/* What a level of a refinement can be off by, from its change against the level before, as a sum over parts
+ * of the integral without their signs, and from that level's own change (0: it was the first). */
+double lq_first_bounce_estimate(double change, double older);
 
 #endif

@@ -181,19 +181,34 @@ static double value_at(const lq_job *job, const tir_state *s, int level, const l
     return s->etas[e].eta == 0.0 ? 1.0 : loss(lobe, s->etas[e].end);
 }
 
-/* Every eta of one lobe, refined until two resolutions in a row agree. Returns twice their difference. */
+/* What each panel of the lobe holds of the whole, and how much that has changed since the level before: where
+ * few eta are asked for, their own values can agree by chance (first_bounce.c says more). The panels are
+ * those of every level. */
+static double change_of_lobe(const lq_angle_lobe *lobe, double *shares) {
+    double change = 0.0;
+    for (int p = 0; p < lobe->panels; p++) {
+        const double share = (lobe->below[p + 1] - lobe->below[p]) / lq_angle_lobe_total(lobe);
+        change += fabs(share - shares[p]);
+        shares[p] = share;
+    }
+    return change;
+}
+
+/* Every eta of one lobe, refined until the error estimate, which is returned, is at most the tolerance. */
 static double converge(const lq_job *job, const tir_state *s, double alpha, double mu, lq_angle_lobe *lobe,
                        double *values, size_t stride) {
-    double estimate = INFINITY;
+    double estimate = INFINITY, older = 0.0, shares[LQ_ANGLE_LOBE_PANELS] = {0.0};
     for (int level = 0; level < RESOLUTIONS && estimate > job->tolerance; level++) {
-        double change = 0.0;
         lq_angle_lobe_make(lobe, job->ndf, alpha, mu, &s->at[level].lobe);
+        double change = change_of_lobe(lobe, shares);
         for (size_t e = 0; e < job->size[ETA]; e++) {
             const double now = value_at(job, s, level, lobe, e);
             if (level > 0) change = fmax(change, fabs(now - values[e * stride]));
             values[e * stride] = now;
         }
-        if (level > 0) estimate = fmax(2.0 * change, 0.1 * job->tolerance);
+        if (level == 0) continue;
+        estimate = fmax(lq_first_bounce_estimate(change, older), 0.1 * job->tolerance);
+        older = change;
     }
     return estimate;
 }

@@ -1,0 +1,114 @@
+/* test_estimates_first_bounce_slow.c - estimates of the kinds of one bounce cover the truth: random points,
+ * uniform and in the corners, of every kind and family of NDF against a tolerance ten times finer. 100 points
+ * each, or LACQUER_POINTS: 5000 takes some minutes. */
+#include "tests/expect.h"
+
+#include "lacquer.h"
+#include "tests/uniform.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const kinds[] = {"albedo", "dfg", "albedo-average", "tir-pass", "tir-loss", "fgd"};
+static const char *const ndfs[] = {"ggx", "beckmann", "gtr:gamma=1.5", "student-t:gamma=30", "file:%s"};
+enum { KINDS = sizeof kinds / sizeof *kinds, NDFS = sizeof ndfs / sizeof *ndfs };
+
+static size_t points_asked(void) {
+    const char *asked = getenv("LACQUER_POINTS");
+    return asked ? (size_t)strtoul(asked, NULL, 10) : 50;
+}
+
+/* Beckmann's shape at one roughness, as somebody would measure it. */
+static void write_samples(char *path) {
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    FILE *out = fdopen(file, "w");
+    fputs("theta_deg,alpha=0.3\n", out);
+    for (int i = 0; i < 180; i++) {
+        const double theta = 0.5 * i * 3.14159265358979323846 / 180.0, t = tan(theta), c = cos(theta);
+        fprintf(out, "%.17g,%.17g\n", 0.5 * i, exp(-t * t / 0.09) / (c * c * c * c));
+    }
+    assert_int_equal(fclose(out), 0);
+}
+
+/* Axis `a` at u in [0,1): even over what a scene asks, or towards the ends where integrals are hard. */
+static double coordinate(const lq_kind *kind, int a, double u, bool corner) {
+    const lq_axis_info *axis = &kind->axes[a];
+    if (strcmp(axis->name, "mu") == 0) return corner ? pow(10.0, -6.0 * u) : u;
+    if (strcmp(axis->name, "alpha") == 0) return corner ? pow(10.0, -4.0 * u) : 0.02 + 0.98 * u;
+    const double low = axis->lowest + 0.05, high = fmin(axis->highest, 4.0);
+    return low + (high - low) * u;
+}
+
+static int count_lies(const lq_kind *kind, lq_settings settings, double alpha_max, size_t points,
+                      bool corner) {
+    int lies = 0;
+    const double tolerance = kind->tolerance;
+    settings.scattering = kind->takes & LQ_TAKES_SCATTERING ? LQ_SINGLE : LQ_MULTIPLE;
+    for (size_t i = 0; i < points; i++) {
+        double point[LQ_MAX_AXES], value[LQ_MAX_CHANNELS], fine[LQ_MAX_CHANNELS], estimate, rest;
+        for (int a = 0; a < kind->axis_count; a++)
+            point[a] = coordinate(kind, a, uniform(8 * i + (size_t)a), corner);
+        const int alpha = kind->axis_count > 1 ? 1 : 0;
+        if (alpha_max < 1.0) point[alpha] = alpha_max;
+        settings.tolerance = tolerance;
+        lq_error error = {""};
+        const lq_status status = lq_eval(kind, &settings, point, value, &estimate, &error);
+        if (status != LQ_OK && status != LQ_NOT_CONVERGED)
+            fail_msg("%s, %s: %s", kind->id, settings.ndf, error.text);
+        settings.tolerance = fmax(0.1 * tolerance, kind->finest_tolerance);
+        lq_eval(kind, &settings, point, fine, &rest, NULL);
+        for (int c = 0; c < kind->channel_count; c++)
+            if (!(fabs(value[c] - fine[c]) <= estimate + rest)) {
+                lies++;
+                print_error("%s, %s, mu %.6g alpha %.6g: error %.2g, estimate %.2g\n", kind->id, settings.ndf,
+                            point[0], point[alpha], fabs(value[c] - fine[c]), estimate);
+            }
+    }
+    return lies;
+}
+
+static void estimates_cover_the_truth(void **state) {
+    (void)state;
+    char path[] = "/tmp/lacquer-ndf-XXXXXX", text[64];
+    int lies = 0;
+    write_samples(path);
+    for (int n = 0; n < NDFS; n++) {
+        lq_settings settings = lq_settings_default();
+        double low, high;
+        snprintf(text, sizeof text, ndfs[n], path);
+        assert_int_equal(lq_ndf_open(&settings.opened, text, NULL), LQ_OK);
+        lq_ndf_range(settings.opened, &low, &high);
+        settings.ndf = lq_ndf_text(settings.opened);
+        for (int k = 0; k < KINDS; k++)
+            for (int corner = 0; corner < 2; corner++)
+                lies += count_lies(lq_kind_find(kinds[k], NULL), settings, low < high ? 1.0 : high,
+                                   k == 2 ? points_asked() / 10 : points_asked(), corner == 1);
+        lq_ndf_close(settings.opened);
+    }
+    unlink(path);
+    assert_int_equal(lies, 0);
+}
+
+/* Two points whose two levels agreed by chance; values from 48 x 64 nodes. */
+static void levels_that_agree_by_chance(void **state) {
+    (void)state;
+    lq_settings settings = lq_settings_default();
+    double value, estimate;
+    settings.ndf = "beckmann";
+    settings.tolerance = 1e-6;
+    lq_eval(lq_kind_find("albedo", NULL), &settings, (double[]){0.18896770165506718, 0.29525943626707812},
+            &value, &estimate, NULL);
+    assert_near(value, 0.9124040956, estimate);
+    assert_true(estimate <= 1e-6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(levels_that_agree_by_chance),
+        cmocka_unit_test(estimates_cover_the_truth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
