@@ -149,14 +149,12 @@ static void readout_free(readout *r) {
     free(r->weights);
 }
 
+/* False without memory; free it in either case. */
 static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, double alpha,
                          const lq_curves *curves, const level *l, const double *mu, size_t count) {
     const size_t k = (size_t)curves->count, n = (size_t)l->nodes;
     *r = (readout){{0}, lq_zeros(count * k), lq_zeros(count * k), lq_zeros(count * n)};
-    if (!r->escaping || !r->remaining || !r->weights) {
-        readout_free(r);
-        return false;
-    }
+    if (!r->escaping || !r->remaining || !r->weights) return false;
     lq_facet_rule rule;
     lq_facet_rule_make(&rule, l->outer, l->inner);
     for (size_t m = 0; m < count; m++) {
@@ -242,7 +240,7 @@ typedef struct refinement {
     size_t mu_count;
     double tolerance;
     double *energy; /* [material * mu_count + m] */
-    double *change; /* of each material, from the level before */
+    double *change; /* of each material, from the level before; negative: not solved yet */
 } refinement;
 
 /* Materials solved together: a basis of curves of their own, and of each its place in the refinement. */
@@ -258,12 +256,14 @@ static size_t place_of(const group *g, size_t material) {
     return g->place ? g->place[material] : material;
 }
 
+/* The first level has nothing to be compared with: what it changes is infinite. */
 static void keep(refinement *r, size_t place, const lq_v8 *energy, size_t lane) {
-    double change = 0.0;
+    const bool first = r->change[place] < 0.0;
+    double change = first ? INFINITY : 0.0;
     for (size_t m = 0; m < r->mu_count; m++) {
         const double now = fmin(fmax(energy[m][lane], 0.0), 1.0);
         double *kept = r->energy + place * r->mu_count + m;
-        change = fmax(change, fabs(now - *kept));
+        if (!first) change = fmax(change, fabs(now - *kept));
         *kept = now;
     }
     r->change[place] = change;
@@ -295,11 +295,9 @@ static bool solve_level(refinement *r, const group *g, const level *l) {
     operators o;
     readout read;
     if (!operators_make(&o, r->ndf, r->alpha, curves, l, g->at)) return false;
-    bool ok = readout_make(&read, &o, r->ndf, r->alpha, curves, l, r->mu, r->mu_count);
-    if (ok) {
-        ok = solve_batches(r, g, &o, &read);
-        readout_free(&read);
-    }
+    const bool ok = readout_make(&read, &o, r->ndf, r->alpha, curves, l, r->mu, r->mu_count) &&
+                    solve_batches(r, g, &o, &read);
+    readout_free(&read);
     operators_free(&o);
     return ok;
 }
@@ -392,7 +390,10 @@ static lq_status solve_slice(const lq_ndf *ndf, double alpha, const lq_conductor
     group all = {.materials = materials, .active_count = materials->count};
     all.active = malloc(materials->count * sizeof *all.active);
     bool ok = r.change && all.active;
-    for (size_t m = 0; ok && m < materials->count; m++) all.active[m] = m;
+    for (size_t m = 0; ok && m < materials->count; m++) {
+        all.active[m] = m;
+        r.change[m] = -1.0;
+    }
     if (materials->count == 1) all.at = critical_split(alpha, materials->n[0], materials->kappa[0]);
     ok = ok && refine(&r, &all, 0);
     *estimate = materials->missed;

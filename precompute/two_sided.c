@@ -27,6 +27,8 @@ lq_status lq_refine(lq_rough *rough, double eta, double tolerance, lq_level_valu
     /* Levels 0 and 1 have the same angles between ray and facet, and from the denser side these tell. */
     const int first = lq_dielectric_is_nearly_matched(rough, eta) ? 2 : eta < 1.0 ? 1 : 0;
     *estimate = 1.0;
+    /* Until a level settles, nothing is known but that energies lie between 0 and 1. */
+    for (size_t i = 0; i < count; i++) values[i] = 0.5;
     for (int level = first; level < LQ_DIELECTRIC_LEVELS; level++) {
         if (*estimate <= tolerance) break;
         status = evaluate(rough, eta, level, asked, now, error);
@@ -186,7 +188,8 @@ static lq_status many_solve(lq_rough *rough, double eta, double tolerance, const
     few.mu = mu;
     few.mu_count = s.nodes;
     lq_status status = watched_solve(rough, eta, tolerance * 2.0 / 3.0, &few, at_node, estimate, error);
-    const double missing = lq_series_truncation(&s, at_node, 1, s.nodes, d->tau_count);
+    const double missing =
+        status == LQ_OK ? lq_series_truncation(&s, at_node, 1, s.nodes, d->tau_count) : INFINITY;
     const bool holds = missing <= tolerance / 3.0;
     if (status == LQ_OK && holds) interpolate(&s, rough, d, at_node, values);
     if (status == LQ_OK && holds) *estimate += missing;
