@@ -515,6 +515,77 @@ lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options
                         const lq_pca_goal *goal, const lq_progress *progress, lq_factored **factored,
                         lq_pca_try **tries, size_t *try_count, lq_error *error);
 
+/* ======================================================================================
+ *                                        Stacks
+ * ======================================================================================
+ *
+ * A layered material, read from the top. Indices are absolute, angles in degrees.
+ *
+ *     {"name": "frosted-metal",
+ *      "layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}, "medium": {"tau": [0.8, 0.5, 0.3]}},
+ *                 {"conductor": {"n": 0.2, "kappa": 3.9, "alpha": 0.05}}]}
+ */
+
+enum { LQ_STACK_CHANNELS = 3, LQ_MAX_LAYERS = 4096, LQ_NDF_TEXT_SIZE = 256, LQ_STACK_NAME_SIZE = 128 };
+
+typedef enum lq_quantity_form { LQ_ONE, LQ_RGB, LQ_RANGE } lq_quantity_form;
+
+/* A number of a description: one value, one a channel, or (scenes) a range. */
+typedef struct lq_quantity {
+    lq_quantity_form form;
+    double value[LQ_STACK_CHANNELS]; /* LQ_ONE: three times the same; LQ_RANGE: the lower end */
+    double highest;                  /* LQ_RANGE: the upper end */
+} lq_quantity;
+
+/* What lies below a dielectric, down to the next interface; light crosses that of the last one, too. */
+typedef struct lq_medium {
+    bool by_sigma;                       /* said by sigma_a, sigma_s, depth and g, not by tau */
+    lq_quantity tau;                     /* transmittance at normal incidence, in [0,1]; 1: vacuum */
+    lq_quantity sigma_a, sigma_s, depth; /* absorption and scattering per unit of depth */
+    lq_quantity g;                       /* Henyey-Greenstein, in (-1,1) */
+} lq_medium;
+
+typedef enum lq_layer_type { LQ_LAYER_DIELECTRIC, LQ_LAYER_CONDUCTOR, LQ_LAYER_LAMBERTIAN } lq_layer_type;
+
+typedef struct lq_layer {
+    lq_layer_type type;
+    lq_quantity n;                /* dielectric: of the medium below, in (0,10]; conductor: [0,100] */
+    lq_quantity kappa;            /* conductor, in [0,100] */
+    bool anisotropic;             /* alpha_x and alpha_y were given apart */
+    lq_quantity alpha_x, alpha_y; /* in [0,1], equal where isotropic */
+    lq_quantity rotate;           /* of the x axis about the normal */
+    lq_quantity rho;              /* lambertian: albedo in [0,1] */
+    char ndf[LQ_NDF_TEXT_SIZE];   /* see lq_ndf_open */
+    lq_medium medium;             /* dielectric */
+} lq_layer;
+
+typedef struct lq_stack {
+    char name[LQ_STACK_NAME_SIZE]; /* "" where it has none */
+    size_t layer_count;
+    lq_layer *layers; /* layers[0] is the top; all but the last are dielectric */
+} lq_stack;
+
+/* LQ_STACK_RANGES: ranges are accepted, for scenes. LQ_STACK_TRUSTED: the files and plugins that an "ndf"
+ * names may be opened; by default a description is data, and such an NDF is refused by name. */
+enum { LQ_STACK_RANGES = 1, LQ_STACK_TRUSTED = 2 };
+
+/* Messages name file, line, layer, cause and what is accepted. `name` stands for the file in those of
+ * lq_stack_parse. LQ_FORMAT: no JSON; LQ_BAD_INPUT: no stack. Free the stack. */
+lq_status lq_stack_read(lq_stack **stack, const char *path, unsigned flags, lq_error *error);
+lq_status lq_stack_parse(lq_stack **stack, const char *text, const char *name, unsigned flags,
+                         lq_error *error);
+/* Back as JSON on one line, which reads as the same stack; free() it. */
+lq_status lq_stack_text(const lq_stack *stack, char **text, lq_error *error);
+lq_status lq_stack_copy(lq_stack **copy, const lq_stack *stack, lq_error *error);
+void lq_stack_free(lq_stack *stack); /* NULL: nothing */
+
+/* One parameter, in all channels: "LAYER.NAME", LAYER top, base or a number counted from 1 at the top, NAME
+ * n, kappa, alpha, alpha.x, alpha.y, alpha.rotate, rho, tau, sigma_a, sigma_s, depth or g. */
+lq_status lq_stack_set(lq_stack *stack, const char *path, double value, lq_error *error);
+/* What that parameter accepts, both ends included unless they are the 0 of an index or the 1 of g. */
+lq_status lq_stack_range(const lq_stack *stack, const char *path, double *lowest, double *highest,
+                         lq_error *error);
+
 #ifdef __cplusplus
 }
 #endif

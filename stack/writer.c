@@ -1,0 +1,119 @@
+/* writer.c - a stack back as JSON text: what a table's facts record. */
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stack/description.h"
+#include "system/status.h"
+
+/* The shortest text that reads as the same double; JSON has a point in every locale. */
+static void put_number(FILE *out, double value) {
+    char text[40];
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    const char *point = localeconv()->decimal_point;
+    char *found = strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
+    if (!found) fputs(text, out);
+    else fprintf(out, "%.*s.%s", (int)(found - text), text, found + strlen(point));
+}
+
+static void put_string(FILE *out, const char *text) {
+    fputc('"', out);
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        if (c < 0x20) fprintf(out, "\\u%04x", c);
+        else if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
+        else fputc(c, out);
+    }
+    fputc('"', out);
+}
+
+static void put_quantity(FILE *out, const lq_quantity *q) {
+    if (q->form == LQ_RGB) {
+        for (int c = 0; c < LQ_STACK_CHANNELS; c++) {
+            fputs(c ? ", " : "[", out);
+            put_number(out, q->value[c]);
+        }
+        fputc(']', out);
+        return;
+    }
+    if (q->form == LQ_RANGE) fputs("{\"min\": ", out);
+    put_number(out, q->value[0]);
+    if (q->form != LQ_RANGE) return;
+    fputs(", \"max\": ", out);
+    put_number(out, q->highest);
+    fputc('}', out);
+}
+
+static void put_member(FILE *out, const char *before, const char *key, const lq_quantity *q) {
+    fprintf(out, "%s\"%s\": ", before, key);
+    put_quantity(out, q);
+}
+
+static void put_alpha(FILE *out, const lq_layer *layer) {
+    if (!layer->anisotropic) {
+        put_member(out, ", ", "alpha", &layer->alpha_x);
+        return;
+    }
+    put_member(out, ", \"alpha\": {", "x", &layer->alpha_x);
+    put_member(out, ", ", "y", &layer->alpha_y);
+    put_member(out, ", ", "rotate", &layer->rotate);
+    fputc('}', out);
+}
+
+static void put_medium(FILE *out, const lq_medium *medium) {
+    if (!medium->by_sigma) {
+        put_member(out, ", \"medium\": {", "tau", &medium->tau);
+    } else {
+        put_member(out, ", \"medium\": {", "sigma_a", &medium->sigma_a);
+        put_member(out, ", ", "sigma_s", &medium->sigma_s);
+        put_member(out, ", ", "depth", &medium->depth);
+        put_member(out, ", ", "g", &medium->g);
+    }
+    fputc('}', out);
+}
+
+static void put_layer(FILE *out, const lq_layer *layer) {
+    fprintf(out, "{\"%s\": {", lq_layer_type_name(layer->type));
+    if (layer->type == LQ_LAYER_LAMBERTIAN) {
+        put_member(out, "", "rho", &layer->rho);
+    } else {
+        put_member(out, "", "n", &layer->n);
+        if (layer->type == LQ_LAYER_CONDUCTOR) put_member(out, ", ", "kappa", &layer->kappa);
+        put_alpha(out, layer);
+        if (strcmp(layer->ndf, "ggx") != 0) {
+            fputs(", \"ndf\": ", out);
+            put_string(out, layer->ndf);
+        }
+    }
+    fputc('}', out);
+    if (layer->type == LQ_LAYER_DIELECTRIC) put_medium(out, &layer->medium);
+    fputc('}', out);
+}
+
+lq_status lq_stack_text(const lq_stack *stack, char **text, lq_error *error) {
+    size_t size;
+    *text = NULL;
+    FILE *out = open_memstream(text, &size);
+    if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for the text of a stack");
+    fputc('{', out);
+    if (stack->name[0]) {
+        fputs("\"name\": ", out);
+        put_string(out, stack->name);
+        fputs(", ", out);
+    }
+    fputs("\"layers\": [", out);
+    for (size_t i = 0; i < stack->layer_count; i++) {
+        if (i) fputs(", ", out);
+        put_layer(out, &stack->layers[i]);
+    }
+    fputs("]}", out);
+    const bool failed = ferror(out) != 0;
+    if (fclose(out) == 0 && !failed) return LQ_OK;
+    free(*text);
+    *text = NULL;
+    return lq_fail(error, LQ_NO_MEMORY, "no memory for the text of a stack");
+}
