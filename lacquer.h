@@ -240,6 +240,18 @@ typedef struct lq_ndf lq_ndf;
 lq_status lq_ndf_open(const lq_ndf **ndf, const char *text, lq_error *error);
 void lq_ndf_close(const lq_ndf *ndf); /* NULL: nothing */
 
+/* An NDF that a file records (a table, a manifest, a recipe) is data: "file:" and "plugin:" would open, or
+ * run, what a stranger chose. Whoever reads such a file says what may be opened. */
+typedef struct lq_trust {
+    const char *ndf; /* what the user named: a recorded one of this path, or of this hash, is opened */
+    bool plugins;    /* any recorded plugin may be loaded */
+} lq_trust;
+
+/* Put into `ndf` the text that may be opened for the recorded `text`: that itself, or trust->ndf where both
+ * have the same hash. LQ_BAD_INPUT, naming it, where it is not trusted; `trust` NULL: only NDFs that need no
+ * file are. The result points into one of the two texts. */
+lq_status lq_ndf_trusted(const char *text, const lq_trust *trust, const char **ndf, lq_error *error);
+
 /* The text that opens the same NDF again: every parameter, and the hash of a file's content, without which a
  * changed file would go unnoticed. It is the fact "ndf" of a table. */
 const char *lq_ndf_text(const lq_ndf *ndf);

@@ -10,6 +10,7 @@
 #include "microfacet/ndf_file.h"
 
 #include "microfacet/ndf_samples.h"
+#include "system/input.h"
 #include "system/status.h"
 
 #include <errno.h>
@@ -211,10 +212,9 @@ lq_status lq_ndf_file_open(const lq_ndf **ndf, const char *text, lq_error *error
     lq_ndf_path path;
     lq_status status = lq_ndf_path_make(&path, "file", text, error);
     if (status == LQ_OK) {
-        reader r = {.path = path.path, .in = fopen(path.path, "r"), .error = error};
-        if (!r.in) {
-            status = lq_fail(error, LQ_IO, "cannot open %s: %s", path.path, strerror(errno));
-        } else {
+        reader r = {.path = path.path, .error = error};
+        status = lq_input_open(&r.in, path.path, LQ_NDF_FILE_LARGEST, error);
+        if (status == LQ_OK) {
             status = read_all(&r);
             if (status == LQ_OK) status = make(&r, ndf, path.id);
             fclose(r.in);

@@ -8,6 +8,9 @@
 lq_status lq_ndf_file_open(const lq_ndf **ndf, const char *text, lq_error *error);
 lq_status lq_ndf_plugin_open(const lq_ndf **ndf, const char *text, lq_error *error);
 
+/* More is no table of samples and no plugin: it is refused before it is read. */
+enum { LQ_NDF_FILE_LARGEST = 1 << 28 };
+
 /* PATH and HASH apart, the content checked against it; `id` becomes "family:PATH#HASH". Free both. */
 typedef struct lq_ndf_path {
     char *path, *id;

@@ -98,6 +98,49 @@ lq_status lq_ndf_open(const lq_ndf **ndf, const char *text, lq_error *error) {
     return lq_fail(error, LQ_BAD_INPUT, "unknown NDF '%s'; known: %s", text, known);
 }
 
+/* The end of FAMILY:PATH in FAMILY:PATH#HASH. */
+static size_t before_hash(const char *text) {
+    const char *mark = strrchr(text, '#');
+    return mark ? (size_t)(mark - text) : strlen(text);
+}
+
+static bool same_path(const char *a, const char *b) {
+    const size_t length = before_hash(a);
+    return length == before_hash(b) && strncmp(a, b, length) == 0;
+}
+
+static bool same_hash(const char *a, const char *b) {
+    const char *x = strrchr(a, '#'), *y = strrchr(b, '#');
+    return x && y && strcmp(x, y) == 0 && strcspn(a, ":") == strcspn(b, ":") &&
+           strncmp(a, b, strcspn(a, ":")) == 0;
+}
+
+/* Only the families of closed form open nothing; one that is added later is not trusted by oversight. */
+static bool needs_no_file(const char *text) {
+    static const char *const closed[] = {"ggx", "beckmann", "gtr", "student-t"};
+    const size_t length = strcspn(text, ":");
+    for (size_t i = 0; i < sizeof closed / sizeof *closed; i++)
+        if (strlen(closed[i]) == length && strncmp(closed[i], text, length) == 0) return true;
+    return false;
+}
+
+lq_status lq_ndf_trusted(const char *text, const lq_trust *trust, const char **ndf, lq_error *error) {
+    const char *named = trust ? trust->ndf : NULL;
+    const bool plugin = strncmp(text, "plugin:", 7) == 0;
+    *ndf = text;
+    if (needs_no_file(text) || (named && same_path(text, named))) return LQ_OK;
+    if (plugin && trust && trust->plugins) return LQ_OK;
+    if (named && same_hash(text, named)) {
+        *ndf = named;
+        return LQ_OK;
+    }
+    *ndf = NULL;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "the recorded NDF '%.200s' is not opened unless you name it; accepted: --ndf %.*s%s", text,
+                   (int)(before_hash(text) < 150 ? before_hash(text) : 150), text,
+                   plugin ? ", or --allow-plugin if you trust its code" : "");
+}
+
 void lq_ndf_close(const lq_ndf *ndf) {
     if (ndf && ndf->release) ndf->release((lq_ndf *)ndf);
 }

@@ -1,5 +1,6 @@
 /* Which file an NDF came from: its path, and a hash of what it held. */
 #include "microfacet/ndf_file.h"
+#include "system/input.h"
 #include "system/status.h"
 
 #include <errno.h>
@@ -12,8 +13,9 @@ enum { HASH_DIGITS = 16 };
 
 /* FNV-1a, 64 bits: tells a changed file from the same, not a forged one. */
 static lq_status hash_file(const char *path, uint64_t *hash, lq_error *error) {
-    FILE *in = fopen(path, "rb");
-    if (!in) return lq_fail(error, LQ_IO, "cannot open %s: %s", path, strerror(errno));
+    FILE *in;
+    const lq_status status = lq_input_open(&in, path, LQ_NDF_FILE_LARGEST, error);
+    if (status != LQ_OK) return status;
     *hash = 0xCBF29CE484222325u;
     unsigned char block[4096];
     for (size_t count; (count = fread(block, 1, sizeof block, in)) > 0;)

@@ -192,7 +192,9 @@ static lq_status read_ndf(lq_recipe_reader *r, json_t *root) {
     lq_error why = {""};
     if (json_object_get(root, "ndf") && !text)
         return lq_refuse_value(r, "ndf", "\"ggx\" and others of lacquer list");
-    lq_status status = lq_ndf_open(&ndf, text ? text : "ggx", &why);
+    const char *trusted = "ggx";
+    lq_status status = text ? lq_ndf_trusted(text, r->trust, &trusted, &why) : LQ_OK;
+    if (status == LQ_OK) status = lq_ndf_open(&ndf, trusted, &why);
     if (status != LQ_OK)
         return lq_fail(r->error, status, "%s:%d: %s", r->path, lq_recipe_line(r, text), why.text);
     r->recipe->ndf = strdup(lq_ndf_text(ndf));
@@ -252,12 +254,12 @@ static char *read_text(const char *path, lq_error *error) {
     return NULL;
 }
 
-lq_status lq_recipe_read(lq_recipe *recipe, const char *path, lq_error *error) {
+lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *trust, lq_error *error) {
     json_error_t wrong;
     *recipe = (lq_recipe){0};
     char *text = read_text(path, error);
     if (!text) return LQ_IO;
-    lq_recipe_reader r = {path, text, LQ_RECIPE_WHOLE, recipe, error};
+    lq_recipe_reader r = {path, text, LQ_RECIPE_WHOLE, recipe, error, trust};
     json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, &wrong);
     lq_status status = root ? read_root(&r, root)
                             : lq_fail(error, LQ_FORMAT, "%s:%d: not JSON: %s", path, wrong.line, wrong.text);

@@ -34,7 +34,8 @@ typedef struct lq_recipe {
 } lq_recipe;
 
 /* Messages are "FILE:LINE: what; accepted: ...". */
-lq_status lq_recipe_read(lq_recipe *recipe, const char *path, lq_error *error);
+/* `trust`: which NDF files and plugins a recipe may name; NULL: none. */
+lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *trust, lq_error *error);
 void lq_recipe_free(lq_recipe *recipe);
 
 #endif

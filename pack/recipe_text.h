@@ -14,6 +14,7 @@ typedef struct lq_recipe_reader {
     int entry;        /* the table being read, or LQ_RECIPE_WHOLE */
     lq_recipe *recipe;
     lq_error *error;
+    const lq_trust *trust;
 } lq_recipe_reader;
 
 /* The line of the first string `token` in the entry being read, that of the entry if there is none (NULL). */

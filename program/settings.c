@@ -35,6 +35,13 @@ bool cli_read_ndf(void *field, const char *value) {
     return true;
 }
 
+bool cli_read_trust(void *field, const char *value) {
+    cli_settings settings;
+    if (!cli_read_ndf(&settings, value)) return false;
+    ((lq_trust *)field)->ndf = settings.settings.ndf;
+    return true;
+}
+
 bool cli_settings_suit(const cli_given *given, const lq_kind *kind) {
     const char *refused = NULL, *text = cli_given_text(given, CLI_TOLERANCE);
     double tolerance = 0.0;

@@ -5,7 +5,7 @@
 #include "lacquer.h"
 #include "program/options.h"
 
-enum { CLI_NDF = 512, CLI_SCATTERING, CLI_MASKING, CLI_TOLERANCE, CLI_THREADS };
+enum { CLI_NDF = 512, CLI_SCATTERING, CLI_MASKING, CLI_TOLERANCE, CLI_THREADS, CLI_ALLOW_PLUGIN };
 enum { CLI_MAX_THREADS = 4096 };
 
 /* Rows for the option list of a verb whose request has a cli_settings `settings`, for these modes of it. */
@@ -39,12 +39,30 @@ enum { CLI_MAX_THREADS = 4096 };
             CLI_COUNT(REQUEST, threads, 1, CLI_MAX_THREADS), .modes = (mask), .silent = true                 \
     }
 
+/* For a verb that reads files which record an NDF, and whose request has an lq_trust `trust`. */
+#define CLI_ALLOW_PLUGIN_OPTION(REQUEST, mask)                                                               \
+    {                                                                                                        \
+        CLI_ALLOW_PLUGIN, "allow-plugin", NULL, "load the NDF plugin a file names: that runs its code",      \
+            CLI_FLAG(REQUEST, trust.plugins), .modes = (mask), .silent = true                                \
+    }
+#define CLI_TRUST_OPTIONS(REQUEST, mask)                                                                     \
+    {CLI_NDF,                                                                                                \
+     "ndf",                                                                                                  \
+     "NDF",                                                                                                  \
+     "the file: or plugin: a file names, which otherwise is not opened",                                     \
+     CLI_READ(REQUEST, trust, cli_read_trust),                                                               \
+     .modes = (mask),                                                                                        \
+     .silent = true},                                                                                        \
+        CLI_ALLOW_PLUGIN_OPTION(REQUEST, mask)
+
 typedef struct cli_settings {
     lq_settings settings;
 } cli_settings;
 
 extern const char *const cli_scatterings[], *const cli_maskings[];
 bool cli_read_ndf(void *settings, const char *value);
+/* --ndf as the name of what may be opened. */
+bool cli_read_trust(void *trust, const char *value);
 
 cli_settings cli_settings_default(void);
 

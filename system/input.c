@@ -1,20 +1,45 @@
 /* input.c - whole files into memory. */
 #include "system/input.h"
 
-#include <stdio.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "system/status.h"
 
+static lq_status check(int file, const char *path, size_t largest, lq_error *error) {
+    struct stat there;
+    if (fstat(file, &there) != 0 || !S_ISREG(there.st_mode))
+        return lq_fail(error, LQ_IO, "cannot read %s: not a regular file", path);
+    if ((size_t)there.st_size > largest)
+        return lq_fail(error, LQ_IO, "cannot read %s: it has %zu bytes; accepted are at most %zu", path,
+                       (size_t)there.st_size, largest);
+    return LQ_OK;
+}
+
+/* O_NONBLOCK: a pipe without a writer would wait for one before it could be refused. */
+lq_status lq_input_open(FILE **in, const char *path, size_t largest, lq_error *error) {
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    *in = NULL;
+    if (file < 0) return lq_fail(error, LQ_IO, "cannot open %s: %s", path, strerror(errno));
+    lq_status status = check(file, path, largest, error);
+    if (status == LQ_OK && !(*in = fdopen(file, "rb")))
+        status = lq_fail(error, LQ_NO_MEMORY, "no memory to read %s", path);
+    if (status != LQ_OK) close(file);
+    return status;
+}
+
 lq_status lq_input_read(const char *path, char **bytes, size_t *size, lq_error *error) {
     struct stat there;
-    FILE *in = fopen(path, "rb");
+    FILE *in;
     *bytes = NULL;
-    if (!in) return lq_fail(error, LQ_IO, "cannot read %s: %m", path);
-    lq_status status = LQ_OK;
-    if (fstat(fileno(in), &there) != 0 || !S_ISREG(there.st_mode))
-        status = lq_fail(error, LQ_IO, "cannot read %s: not a regular file", path);
+    lq_status status = lq_input_open(&in, path, SIZE_MAX / 2, error);
+    if (status != LQ_OK) return status;
+    if (fstat(fileno(in), &there) != 0) status = lq_fail(error, LQ_IO, "cannot read %s: %m", path);
     if (status == LQ_OK) {
         *size = (size_t)there.st_size;
         *bytes = malloc(*size + 1);

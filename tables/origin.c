@@ -56,12 +56,13 @@ static lq_status check_shape(const lq_table *table, const lq_kind *kind, lq_erro
     return LQ_OK;
 }
 
-static lq_status read_settings(const facts *from, const lq_kind *kind, lq_settings *settings,
-                               lq_error *error) {
+static lq_status read_settings(const facts *from, const lq_kind *kind, const lq_trust *trust,
+                               lq_settings *settings, lq_error *error) {
     *settings = lq_settings_default();
-    settings->ndf = fact(from, "ndf");
-    if (!settings->ndf) return lq_fail(error, LQ_FORMAT, "the table does not say its ndf");
-    lq_status status = read_tolerance(from, &settings->tolerance, error);
+    const char *ndf = fact(from, "ndf");
+    if (!ndf) return lq_fail(error, LQ_FORMAT, "the table does not say its ndf");
+    lq_status status = lq_ndf_trusted(ndf, trust, &settings->ndf, error);
+    if (status == LQ_OK) status = read_tolerance(from, &settings->tolerance, error);
     int choice = 0;
     if (status == LQ_OK && (kind->takes & LQ_TAKES_SCATTERING)) {
         status = read_choice(from, "scattering", "single", "multiple", &choice, error);
@@ -74,16 +75,17 @@ static lq_status read_settings(const facts *from, const lq_kind *kind, lq_settin
     return status;
 }
 
-lq_status lq_origin_of_facts(const lq_fact *list, size_t count, lq_origin *origin, lq_error *error) {
+lq_status lq_origin_of_facts(const lq_fact *list, size_t count, const lq_trust *trust, lq_origin *origin,
+                             lq_error *error) {
     const facts from = {list, count};
     const char *id = fact(&from, "table");
     if (!id) return lq_fail(error, LQ_FORMAT, "the table does not say of which kind it is");
     origin->kind = lq_kind_find(id, error);
-    return origin->kind ? read_settings(&from, origin->kind, &origin->settings, error) : LQ_FORMAT;
+    return origin->kind ? read_settings(&from, origin->kind, trust, &origin->settings, error) : LQ_FORMAT;
 }
 
-lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error) {
-    const lq_status status = lq_origin_of_facts(table->facts, table->fact_count, origin, error);
+lq_status lq_origin_of(const lq_table *table, const lq_trust *trust, lq_origin *origin, lq_error *error) {
+    const lq_status status = lq_origin_of_facts(table->facts, table->fact_count, trust, origin, error);
     return status == LQ_OK ? check_shape(table, origin->kind, error) : status;
 }
 

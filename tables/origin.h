@@ -6,14 +6,17 @@
 
 typedef struct lq_origin {
     const lq_kind *kind;
-    lq_settings settings; /* its ndf points into the table's facts */
+    lq_settings settings; /* its ndf, which may be opened, points into the facts or the trust */
 } lq_origin;
 
-/* LQ_FORMAT where a fact is missing or unknown, or axes and channels are not those of the kind. */
-lq_status lq_origin_of(const lq_table *table, lq_origin *origin, lq_error *error);
+/* The one place where a recorded NDF becomes one to open: LQ_BAD_INPUT where lq_ndf_trusted refuses it (trust
+ * NULL: every file). LQ_FORMAT where a fact is missing or unknown, or axes and channels are not those of the
+ * kind. */
+lq_status lq_origin_of(const lq_table *table, const lq_trust *trust, lq_origin *origin, lq_error *error);
 
 /* The same from the facts alone, whatever they are attached to. */
-lq_status lq_origin_of_facts(const lq_fact *facts, size_t count, lq_origin *origin, lq_error *error);
+lq_status lq_origin_of_facts(const lq_fact *facts, size_t count, const lq_trust *trust, lq_origin *origin,
+                             lq_error *error);
 
 /* "fgd, ggx, multiple scattering": what determines the numbers, on one line. */
 void lq_origin_describe(const lq_kind *kind, const lq_settings *settings, char *text, size_t size);

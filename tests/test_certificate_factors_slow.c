@@ -38,8 +38,9 @@ static const char path[] = "test_certificate_factors.exr", table_path[] = "test_
 static void certify(lq_certified *certified, bool with_table, size_t points) {
     lq_certify_options options = {.points = points, .seed = 1};
     memset(certified, 0, sizeof *certified);
-    assert_int_equal(lq_subject_read(&certified->subject, path, NULL), LQ_OK);
-    if (with_table) assert_int_equal(lq_subject_add_table(&certified->subject, table_path, NULL), LQ_OK);
+    assert_int_equal(lq_subject_read(&certified->subject, path, NULL, NULL), LQ_OK);
+    if (with_table)
+        assert_int_equal(lq_subject_add_table(&certified->subject, table_path, NULL, NULL), LQ_OK);
     assert_int_equal(lq_budget_parse(&options.rule.budget, "max=5e-2,p99=1e-2", NULL), LQ_OK);
     assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
 }
@@ -138,7 +139,7 @@ static void test_half_a_cell_is_named(void **state) {
     lq_factored_free(factored);
     lq_certify_options options = {.points = 20000, .seed = 1};
     memset(certified, 0, sizeof *certified);
-    assert_int_equal(lq_subject_read(&certified->subject, path, NULL), LQ_OK);
+    assert_int_equal(lq_subject_read(&certified->subject, path, NULL, NULL), LQ_OK);
     assert_int_equal(lq_budget_parse(&options.rule.budget, "max=1e-3", NULL), LQ_OK);
     assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
     assert_non_null(lq_certified_failure(certified));

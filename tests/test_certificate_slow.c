@@ -33,7 +33,7 @@ static void certify(lq_certified *certified, lq_table *table, size_t points) {
     lq_certify_options options = {.points = points, .seed = 1};
     memset(certified, 0, sizeof *certified);
     certified->subject.table = table;
-    assert_int_equal(lq_origin_of(table, &certified->subject.origin, NULL), LQ_OK);
+    assert_int_equal(lq_origin_of(table, NULL, &certified->subject.origin, NULL), LQ_OK);
     assert_int_equal(lq_ranges_parse(&options.rule, "mu=0.05:1,alpha=0.1:1", NULL), LQ_OK);
     assert_int_equal(lq_budget_parse(&options.rule.budget, "max=0.2,p99=0.05", NULL), LQ_OK);
     assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
@@ -106,7 +106,7 @@ static void test_wrong_masking_is_named(void **state) {
     assert_int_equal(lq_precompute(kind, &settings, axes, NULL, &certified->subject.table, NULL), LQ_OK);
     for (int a = 0; a < 2; a++) lq_axis_free(&axes[a]);
     assert_int_equal(lq_table_set_fact(certified->subject.table, "masking", "correlated", NULL), LQ_OK);
-    assert_int_equal(lq_origin_of(certified->subject.table, &certified->subject.origin, NULL), LQ_OK);
+    assert_int_equal(lq_origin_of(certified->subject.table, NULL, &certified->subject.origin, NULL), LQ_OK);
     assert_int_equal(lq_budget_parse(&options.rule.budget, "max=1e-2", NULL), LQ_OK);
     assert_int_equal(lq_certified_make(certified, &options, NULL, NULL), LQ_OK);
     assert_int_equal(check_named(certified, "budget max")->outcome, LQ_FAILED);

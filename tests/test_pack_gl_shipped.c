@@ -264,7 +264,7 @@ static double from_exact(const table *t, const float *points, const float *value
         assert_int_equal(lq_ndf_open(&ndf, "ggx", &error), LQ_OK);
         assert_int_equal(lq_curve_make(&curve, ndf, &error), LQ_OK);
     } else {
-        assert_int_equal(lq_origin_of_facts(facts, count, &origin, &error), LQ_OK);
+        assert_int_equal(lq_origin_of_facts(facts, count, NULL, &origin, &error), LQ_OK);
     }
     for (size_t i = 0; i < EXACT; i++) {
         double x[LQ_MAX_AXES], exact[LQ_MAX_CHANNELS], estimate;

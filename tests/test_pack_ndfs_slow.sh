@@ -37,7 +37,7 @@ pack() { # NDF ALPHA F
   {"table": "fgd-dielectric", "tolerance": 1e-3, "axes": {"mu": "0.02:1:24:sqrt", "eta": "1.2:2:8"$2},
    "pca": {"separate": "eta:4"}}$3]}
 END_OF_RECIPE
-    "$lacquer" pack recipe.json -o pack --cache cache >made.txt 2>message.txt
+    "$lacquer" pack recipe.json --ndf "$1" -o pack --cache cache >made.txt 2>message.txt
 }
 alphas=', "alpha": "0.05:1:24:sqrt"'
 f=', {"mapping": "f", "axes": {"alpha": "0.02:0.45:128"}, "pca": {"value": "square"}}'
@@ -45,13 +45,13 @@ for ndf in beckmann gtr:gamma=1.5 student-t:gamma=3 file:ggx.csv; do
     f_here=$f tables=4
     [ "$ndf" != file:ggx.csv ] || f_here='' tables=3 # its roughness starts at 0.001
     pack "$ndf" "$alphas" "$f_here" || fail "$ndf: $(cat message.txt)"
-    "$lacquer" validate pack --points 1000 >certificate.txt || fail "$ndf: $(cat certificate.txt)"
+    "$lacquer" validate pack --ndf "$ndf" --points 1000 >certificate.txt || fail "$ndf: $(cat certificate.txt)"
     [ "$(grep -c "^passed$" certificate.txt)" = "$tables" ] || fail "$ndf: $(cat certificate.txt)"
     grep -q "fgd-dielectric, ${ndf%%#*}" certificate.txt || fail "$ndf is not what was certified"
 done
 
 # A material of one roughness has nothing along alpha.
 pack file:measured.csv '' '' || fail "measured: $(cat message.txt)"
-"$lacquer" validate pack --points 1000 >certificate.txt || fail "measured: $(cat certificate.txt)"
+"$lacquer" validate pack --ndf file:measured.csv --points 1000 >certificate.txt || fail "measured: $(cat certificate.txt)"
 pack file:measured.csv '' "$f" && fail "f of one roughness"
 [ "$(wc -l <message.txt)" = 1 ] && grep -q 'mapping is a limit at alpha = 0' message.txt || fail "$(cat message.txt)"

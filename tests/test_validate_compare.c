@@ -114,24 +114,24 @@ static void test_origin(void **state) {
     lq_origin origin;
     lq_error error;
     make_table(&table, axes);
-    assert_int_equal(lq_origin_of(table, &origin, &error), LQ_FORMAT);
+    assert_int_equal(lq_origin_of(table, NULL, &origin, &error), LQ_FORMAT);
     static const char *const facts[][2] = {
         {"table", "albedo"}, {"ndf", "ggx"}, {"masking", "separable"}, {"tolerance", "1e-06"}};
     for (size_t i = 0; i < 4; i++) {
-        assert_int_not_equal(lq_origin_of(table, &origin, &error), LQ_OK);
+        assert_int_not_equal(lq_origin_of(table, NULL, &origin, &error), LQ_OK);
         assert_int_equal(lq_table_set_fact(table, facts[i][0], facts[i][1], NULL), LQ_OK);
     }
-    assert_int_equal(lq_origin_of(table, &origin, &error), LQ_OK);
+    assert_int_equal(lq_origin_of(table, NULL, &origin, &error), LQ_OK);
     assert_string_equal(origin.kind->id, "albedo");
     assert_true(origin.settings.masking == LQ_SEPARABLE && origin.settings.tolerance == 1e-6);
     char text[128];
     lq_origin_describe(origin.kind, &origin.settings, text, sizeof text);
     assert_string_equal(text, "albedo, ggx, separable masking");
     assert_int_equal(lq_table_set_fact(table, "masking", "sideways", NULL), LQ_OK);
-    assert_int_equal(lq_origin_of(table, &origin, &error), LQ_FORMAT);
+    assert_int_equal(lq_origin_of(table, NULL, &origin, &error), LQ_FORMAT);
     assert_non_null(strstr(error.text, "sideways"));
     assert_int_equal(lq_table_set_fact(table, "table", "fgd", NULL), LQ_OK);
-    assert_int_equal(lq_origin_of(table, &origin, &error), LQ_FORMAT);
+    assert_int_equal(lq_origin_of(table, NULL, &origin, &error), LQ_FORMAT);
     lq_table_free(table);
     lq_axis_free(&axes[0]);
     lq_axis_free(&axes[1]);

@@ -58,17 +58,17 @@ static lq_status check_axes(const lq_factored *factored, const lq_kind *kind, lq
     return LQ_OK;
 }
 
-static lq_status read_factored(lq_subject *s, const char *path, lq_error *error) {
+static lq_status read_factored(lq_subject *s, const char *path, const lq_trust *trust, lq_error *error) {
     lq_status status = lq_factored_read(&s->factored, path, error);
     if (status == LQ_OK) status = lq_factored_read(&s->unrounded, path, error);
     if (status == LQ_OK)
-        status = lq_origin_of_facts(s->factored->facts, s->factored->fact_count, &s->origin, error);
+        status = lq_origin_of_facts(s->factored->facts, s->factored->fact_count, trust, &s->origin, error);
     if (status == LQ_OK) status = check_axes(s->factored, s->origin.kind, error);
     if (status == LQ_OK) unround(s->unrounded);
     return status;
 }
 
-lq_status lq_subject_read(lq_subject *s, const char *path, lq_error *error) {
+lq_status lq_subject_read(lq_subject *s, const char *path, const lq_trust *trust, lq_error *error) {
     *s = (lq_subject){.table = NULL};
     const char *slash = strrchr(path, '/');
     snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
@@ -78,9 +78,9 @@ lq_status lq_subject_read(lq_subject *s, const char *path, lq_error *error) {
     if (lq_table_fact(s->table, "factors")) {
         lq_table_free(s->table);
         s->table = NULL;
-        status = read_factored(s, path, &cause);
+        status = read_factored(s, path, trust, &cause);
     } else {
-        status = lq_origin_of(s->table, &s->origin, &cause);
+        status = lq_origin_of(s->table, trust, &s->origin, &cause);
     }
     /* Once, not at every block: an NDF may tabulate. */
     if (status == LQ_OK) status = lq_ndf_open(&s->origin.settings.opened, s->origin.settings.ndf, &cause);
@@ -120,17 +120,18 @@ static lq_status copy_unrounded(const lq_table *from, lq_table **copy, lq_error 
 
 /* What lq_mapping_table sets: the NDF. The tolerance is that of the curve. */
 static lq_status mapping_origin(lq_subject *s, const lq_kind *kind, const lq_fact *facts, size_t count,
-                                lq_error *error) {
+                                const lq_trust *trust, lq_error *error) {
     const char *ndf = lq_facts_find(facts, count, "ndf");
     if (!ndf) return lq_fail(error, LQ_FORMAT, "the manifest does not say its ndf");
     s->origin.kind = kind;
     s->origin.settings = lq_settings_default();
-    s->origin.settings.ndf = ndf;
+    const lq_status status = lq_ndf_trusted(ndf, trust, &s->origin.settings.ndf, error);
+    if (status != LQ_OK) return status;
     s->curve = malloc(sizeof *s->curve);
     return s->curve ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a curve");
 }
 
-lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, lq_error *error) {
+lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, const lq_trust *trust, lq_error *error) {
     *s = (lq_subject){.table = shipped->table, .factored = shipped->factored, .texture = shipped->texture};
     s->relative = shipped->relative;
     s->files = shipped->files;
@@ -149,8 +150,8 @@ lq_status lq_subject_ship(lq_subject *s, lq_shipped *shipped, lq_error *error) {
     const lq_fact *facts = s->factored ? s->factored->facts : s->table->facts;
     const size_t count = s->factored ? s->factored->fact_count : s->table->fact_count;
     if (status == LQ_OK)
-        status = lq_is_mapping(kind) ? mapping_origin(s, kind, facts, count, &cause)
-                                     : lq_origin_of_facts(facts, count, &s->origin, &cause);
+        status = lq_is_mapping(kind) ? mapping_origin(s, kind, facts, count, trust, &cause)
+                                     : lq_origin_of_facts(facts, count, trust, &s->origin, &cause);
     if (status == LQ_OK && s->origin.kind != kind)
         status = lq_fail(&cause, LQ_FORMAT, "made as '%s', listed as '%s'", s->origin.kind->id, kind->id);
     if (status == LQ_OK && s->factored) status = check_axes(s->factored, kind, &cause);
@@ -168,12 +169,12 @@ lq_status lq_subject_make_table(lq_subject *s, const lq_axis *axes, const lq_pro
     return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }
 
-lq_status lq_subject_add_table(lq_subject *s, const char *path, lq_error *error) {
+lq_status lq_subject_add_table(lq_subject *s, const char *path, const lq_trust *trust, lq_error *error) {
     lq_origin origin;
     lq_error cause = {""};
     lq_status status = lq_table_read_exr(&s->table, path, error);
     if (status != LQ_OK) return status;
-    status = lq_origin_of(s->table, &origin, &cause);
+    status = lq_origin_of(s->table, trust, &origin, &cause);
     if (status == LQ_OK && origin.kind != s->origin.kind)
         status = lq_fail(&cause, LQ_BAD_INPUT, "a table of kind '%s', but the factors are of '%s'",
                          origin.kind->id, s->origin.kind->id);

@@ -24,14 +24,14 @@ typedef struct lq_subject {
 } lq_subject;
 
 /* A table or a factor file, whichever it is. Free it in every case. */
-lq_status lq_subject_read(lq_subject *subject, const char *path, lq_error *error);
+lq_status lq_subject_read(lq_subject *subject, const char *path, const lq_trust *trust, lq_error *error);
 /* A table of a pack, whose contents it takes over. */
-lq_status lq_subject_ship(lq_subject *subject, lq_shipped *shipped, lq_error *error);
+lq_status lq_subject_ship(lq_subject *subject, lq_shipped *shipped, const lq_trust *trust, lq_error *error);
 /* Compute the table anew that the factors of a pack were made from, over these axes. */
 lq_status lq_subject_make_table(lq_subject *subject, const lq_axis *axes, const lq_progress *progress,
                                 lq_error *error);
 /* The table that the factors were made from: its interpolation becomes a part of its own. */
-lq_status lq_subject_add_table(lq_subject *subject, const char *path, lq_error *error);
+lq_status lq_subject_add_table(lq_subject *subject, const char *path, const lq_trust *trust, lq_error *error);
 void lq_subject_free(lq_subject *subject);
 
 /* The whole of its axes. */

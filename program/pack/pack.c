@@ -6,6 +6,7 @@
 #include "program/message.h"
 #include "program/options.h"
 #include "program/progress.h"
+#include "program/settings.h"
 #include "program/verb.h"
 
 #include <math.h>
@@ -22,6 +23,7 @@ static const cli_option options[] = {
      CLI_TEXT(pack_request, cache_given), .silent = true},
     {OPTION_THREADS, "threads", "N", "threads; the files do not depend on it (default: one per core)",
      CLI_COUNT(pack_request, threads, 1, 4096), .silent = true},
+    CLI_TRUST_OPTIONS(pack_request, 0),
     {0},
 };
 
@@ -170,7 +172,7 @@ static int run(int argc, char **argv) {
     lq_error error = {""};
     if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
     if (request.threads) omp_set_num_threads((int)request.threads);
-    lq_status status = lq_recipe_read(&recipe, request.recipe_path, &error);
+    lq_status status = lq_recipe_read(&recipe, request.recipe_path, &request.trust, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     lq_packed *packed = calloc(recipe.count, sizeof *packed);
     const int code = packed ? pack(&request, &recipe, packed) : cli_fail("out of memory");

@@ -9,6 +9,7 @@
 typedef struct pack_request {
     const char *recipe_path, *output, *cache_given;
     size_t threads;
+    lq_trust trust;       /* which NDF the recipe names may be opened */
     char cache[PATH_MAX]; /* empty: none */
     char build[64];
 } pack_request;

@@ -5,7 +5,7 @@
 #include "system/status.h"
 #include "tables/origin.h"
 
-void pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_table *table,
+bool pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_table *table,
                       const lq_table *against) {
     lq_origin origin;
     lq_error error = {""};
@@ -13,17 +13,21 @@ void pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_tab
     if (against) {
         exact->from = request->against;
     } else if (!request->nodes_only) {
-        exact->solver = lq_origin_of(table, &origin, &error) == LQ_OK;
+        const lq_status status = lq_origin_of(table, &request->trust, &origin, &error);
+        exact->solver = status == LQ_OK;
+        if (status == LQ_BAD_INPUT)
+            return cli_message("%s: %s; or --nodes-only", request->input, error.text), false;
         if (exact->solver) exact->from = "the solver at random points";
         else cli_message("errors are at the table's own nodes only: %s", error.text);
     }
+    return true;
 }
 
 static lq_status solve(const pca_exact *exact, const double *min, const double *max, lq_table **values,
                        lq_error *error) {
     lq_origin origin;
     lq_axis axes[LQ_MAX_AXES] = {0};
-    lq_status status = lq_origin_of(exact->table, &origin, error);
+    lq_status status = lq_origin_of(exact->table, &exact->request->trust, &origin, error);
     if (status == LQ_OK)
         status = lq_random_axes(exact->table->axes, exact->table->axis_count, min, max,
                                 exact->request->random, exact->request->seed, axes, error);

@@ -92,6 +92,7 @@ static const cli_option options[] = {
      .silent = true},
     {OPTION_SVG, "svg", "FILE", "error against bytes", CLI_TEXT(pca_request, svg), .silent = true},
     CLI_THREADS_OPTION(pca_request, 0),
+    CLI_TRUST_OPTIONS(pca_request, 0),
     {0},
 };
 
@@ -239,7 +240,7 @@ static int pca(pca_request *r, const lq_table *table, const lq_table *against) {
     pca_exact exact;
     int channel, code;
     if (!pca_resolve(r, table, &channel)) return CLI_FAILED;
-    pca_exact_choose(&exact, r, table, against);
+    if (!pca_exact_choose(&exact, r, table, against)) return CLI_FAILED;
     const double start = cli_seconds();
     const lq_status status = work(r, table, channel, &exact, &out, &error);
     if (status == LQ_OK || status == LQ_NOT_CONVERGED)

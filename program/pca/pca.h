@@ -18,6 +18,7 @@ typedef struct pca_request {
     size_t sweeps;
     lq_pca_options options;
     size_t threads; /* 0: one per core */
+    lq_trust trust; /* which recorded NDF may be opened */
     char *command;
 } pca_request;
 
@@ -32,8 +33,9 @@ typedef struct pca_exact {
     bool solver;
 } pca_exact;
 
-/* `against` may be NULL. A line on stderr where the solver cannot be asked. */
-void pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_table *table,
+/* `against` may be NULL. A line on stderr where the solver cannot be asked; false where that is because the
+ * NDF is not trusted. */
+bool pca_exact_choose(pca_exact *exact, const pca_request *request, const lq_table *table,
                       const lq_table *against);
 /* As lq_pca_goal wants it; `user` is a pca_exact. */
 lq_status pca_exact_values(void *user, const double *min, const double *max, lq_table **values,

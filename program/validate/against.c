@@ -57,16 +57,18 @@ static lq_status load(against_job *job, lq_error *error) {
     lq_status status;
     if (request->axes || request->diagnose) {
         job->other_name = request->file;
-        if (request->diagnose) status = validate_load_file(request->file, &job->other, &job->origin, error);
+        if (request->diagnose)
+            status = validate_load_file(request->file, &request->trust, &job->other, &job->origin, error);
         else status = lq_table_read_described(&job->other, request->file, request->axes, error);
-        if (status == LQ_OK && request->axes) status = lq_origin_of(job->other, &job->origin, error);
+        if (status == LQ_OK && request->axes)
+            status = lq_origin_of(job->other, &request->trust, &job->origin, error);
     } else if (!request->other) {
         job->other_name = request->file;
         status = read_published(&job->other, request->file, request, error);
         if (status == LQ_OK) status = assume_origin(job, error);
     } else {
         job->other_name = request->other;
-        status = validate_load_file(request->file, &job->file, &job->origin, error);
+        status = validate_load_file(request->file, &request->trust, &job->file, &job->origin, error);
         if (status == LQ_OK)
             status = request->layout >= 0 ? read_published(&job->other, request->other, request, error)
                                           : lq_table_read_exr(&job->other, request->other, error);

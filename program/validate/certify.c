@@ -71,10 +71,10 @@ static lq_status make(const certify_request *request, const lq_rule *own, lq_cer
 
 static lq_status make_file(const certify_request *request, const char *path, lq_certified *certified,
                            lq_error *error) {
-    lq_status status = lq_subject_read(&certified->subject, path, error);
+    lq_status status = lq_subject_read(&certified->subject, path, &request->trust, error);
     if (status == LQ_OK && request->table)
         status = certified->subject.factored
-                     ? lq_subject_add_table(&certified->subject, request->table, error)
+                     ? lq_subject_add_table(&certified->subject, request->table, &request->trust, error)
                      : LQ_BAD_INPUT;
     if (status == LQ_BAD_INPUT && !error->text[0])
         snprintf(error->text, sizeof error->text, "--table needs a factor file; '%.200s' is a table", path);
@@ -178,7 +178,7 @@ static lq_status make_pack(const certify_request *request, lq_certified **list, 
     for (size_t i = 0; i < pack.count && status == LQ_OK; i++) {
         const lq_rule own = promise(&pack.tables[i]);
         lq_certified *certified = &(*list)[(*count)++];
-        status = lq_subject_ship(&certified->subject, &pack.tables[i], error);
+        status = lq_subject_ship(&certified->subject, &pack.tables[i], &request->trust, error);
         if (status == LQ_OK && request->parts) status = make_table(&pack.tables[i], certified, error);
         if (status == LQ_OK) status = make(request, &own, certified, error);
     }

@@ -54,7 +54,8 @@ enum {
     }
 
 typedef struct certify_request {
-    bool wanted; /* any of these options, or a budget by norm */
+    lq_trust trust; /* which recorded NDFs may be opened */
+    bool wanted;    /* any of these options, or a budget by norm */
     const char *path;
     lq_budgets budgets;
     bool parts;

@@ -30,7 +30,8 @@ static void print_notes(FILE *out) {
         "With --against OTHER, OTHER minus FILE is taken at every node of OTHER, or at --points P of them\n"
         "drawn at random; where FILE has other nodes, what it says it holds is computed there. A published\n"
         "FILE alone is compared with the solver; --ndf, --scattering, --masking and --tolerance say what\n"
-        "to compute, because it does not. Noise of independent samples is uncorrelated between\n"
+        "to compute, because it does not. An NDF from a file or plugin that another FILE records is opened\n"
+        "only if --ndf names it. Noise of independent samples is uncorrelated between\n"
         "neighbours, a bias is not. What differs is held against the known other definitions. Exit code\n"
         "2: --budget is exceeded or, without one, neither the tolerances nor such noise explain the\n"
         "difference. docs/foreign.md describes AXES.json.\n\n"
@@ -109,7 +110,8 @@ static const cli_option options[] = {
     {FORMAT, "format", "text|json", "of the report (default text)",
      CLI_CHOICE(validate_request, format, formats)},
     {JSON, "json", NULL, "the same as --format json", CLI_FLAG(validate_request, json)},
-    CLI_NDF_OPTION(validate_request, PUBLISHED | HARD_CASES),
+    CLI_NDF_OPTION(validate_request, 0),
+    CLI_ALLOW_PLUGIN_OPTION(validate_request, ~(unsigned)(PUBLISHED | HARD_CASES)),
     CLI_SCATTERING_OPTION(validate_request, PUBLISHED),
     CLI_MASKING_OPTION(validate_request, PUBLISHED),
     CLI_TOLERANCE_OPTION(validate_request, PUBLISHED),
@@ -170,6 +172,8 @@ static bool parse(validate_request *request, int argc, char **argv) {
     if (!cli_parse(&cli_verb_validate, argc, argv, request, take_word, &request->given)) return false;
     request->points_given = cli_given_text(&request->given, POINTS) != NULL;
     request->json |= request->format == 1;
+    if (cli_given_text(&request->given, CLI_NDF)) request->trust.ndf = request->settings.settings.ndf;
+    request->certify.trust = request->trust;
     for (int id = CERTIFY_FIRST; id <= CERTIFY_LAST; id++)
         request->certify.wanted |= cli_given_text(&request->given, id) != NULL;
     if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
@@ -179,17 +183,19 @@ static bool parse(validate_request *request, int argc, char **argv) {
     return false;
 }
 
-lq_status validate_load_file(const char *path, lq_table **table, lq_origin *origin, lq_error *error) {
+lq_status validate_load_file(const char *path, const lq_trust *trust, lq_table **table, lq_origin *origin,
+                             lq_error *error) {
     lq_status status = lq_table_read_exr(table, path, error);
     if (status != LQ_OK) return status;
     lq_error cause = {""};
-    status = lq_origin_of(*table, origin, &cause);
+    status = lq_origin_of(*table, trust, origin, &cause);
     if (status != LQ_OK) snprintf(error->text, sizeof error->text, "%.200s: %.300s", path, cause.text);
     return status;
 }
 
 static lq_status load(validate_job *job, lq_error *error) {
-    lq_status status = validate_load_file(job->request.file, &job->table, &job->origin, error);
+    lq_status status =
+        validate_load_file(job->request.file, &job->request.trust, &job->table, &job->origin, error);
     /* Once, not at every point: an NDF may tabulate. */
     if (status == LQ_OK) status = lq_ndf_open(&job->origin.settings.opened, job->origin.settings.ndf, error);
     if (status == LQ_OK && job->request.walk && !lq_walk_knows(job->origin.kind)) {

@@ -23,6 +23,7 @@ typedef struct validate_request {
     const char *other, *kind;
     int layout; /* of OTHER, or of FILE where there is none; -1: EXR */
     cli_settings settings;
+    lq_trust trust;  /* which recorded NDFs may be opened: --ndf, --allow-plugin */
     cli_given given; /* the options, as the command gave them */
     bool points_given;
     certify_request certify;
@@ -54,7 +55,8 @@ typedef struct validate_job {
 } validate_job;
 
 /* Read a table of this program and what made it. */
-lq_status validate_load_file(const char *path, lq_table **table, lq_origin *origin, lq_error *error);
+lq_status validate_load_file(const char *path, const lq_trust *trust, lq_table **table, lq_origin *origin,
+                             lq_error *error);
 
 /* The whole of `validate --against OTHER`; returns the exit code. */
 int validate_against(const validate_request *request);
