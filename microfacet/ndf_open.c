@@ -115,13 +115,16 @@ static bool same_hash(const char *a, const char *b) {
            strncmp(a, b, strcspn(a, ":")) == 0;
 }
 
-/* Only the families of closed form open nothing; one that is added later is not trusted by oversight. */
+/* Only the families of closed form open nothing; one that is added later is not trusted by oversight. A
+ * family that is not known opens nothing either: opening it says which are. */
 static bool needs_no_file(const char *text) {
-    static const char *const closed[] = {"ggx", "beckmann", "gtr", "student-t"};
     const size_t length = strcspn(text, ":");
-    for (size_t i = 0; i < sizeof closed / sizeof *closed; i++)
-        if (strlen(closed[i]) == length && strncmp(closed[i], text, length) == 0) return true;
-    return false;
+    for (size_t i = 0; i < FAMILIES; i++) {
+        const family *f = &families[i];
+        if (strlen(f->id) == length && strncmp(f->id, text, length) == 0)
+            return f->open == open_closed || f->open == open_gtr || f->open == open_student_t;
+    }
+    return true;
 }
 
 lq_status lq_ndf_trusted(const char *text, const lq_trust *trust, const char **ndf, lq_error *error) {

@@ -152,11 +152,20 @@ static unsigned mode_of(const validate_request *request, const char **where) {
     return OWN;
 }
 
+/* What FILE records may be named where FILE says how it was made; an NDF that opens nothing is not read. */
+static bool names_nothing(const validate_request *request, unsigned mode) {
+    const char *ndf;
+    return request->trust.ndf && !(mode & (PUBLISHED | HARD_CASES)) &&
+           lq_ndf_trusted(request->trust.ndf, NULL, &ndf, NULL) == LQ_OK;
+}
+
 static bool suits(const validate_request *request, const cli_given *given) {
     const char *where;
     const unsigned mode = mode_of(request, &where);
     if (mode == PUBLISHED && request->walk)
         cli_message("a published table is not checked by walks; drop --layout or --against walk");
+    else if (names_nothing(request, mode))
+        cli_message("--ndf has no effect %s; accepted there: the file: or plugin: that FILE records", where);
     else if (!cli_suits(given, mode, where)) return false;
     else if (request->layout >= 0 && !request->kind)
         cli_message("--layout needs --kind: a published file does not say which table it holds");
