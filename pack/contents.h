@@ -35,7 +35,7 @@ lq_status lq_contents_read(lq_contents *contents, const char *folder, lq_error *
 lq_status lq_contents_check(const lq_contents *contents, const char *folder, const char *shown,
                             lq_error *error);
 
-/* Remove the files listed, the manifest and, where nothing else is in it, the folder: then true. */
+/* Remove the files listed, then the manifest and, where nothing else is in it, the folder: then true. */
 bool lq_contents_remove(const lq_contents *contents, const char *folder);
 
 void lq_contents_free(lq_contents *contents);

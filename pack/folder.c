@@ -15,8 +15,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A staging folder is TARGET.new-XXXXXX with this file in it, which goes before the exchange: a folder of
- * that name without it is somebody else's. */
+/* A staging folder is TARGET.new-XXXXXX with this file in it: a folder of that name without it is somebody
+ * else's, unless it is empty or a pack as it was made. The mark goes last before the exchange, when the folder
+ * is such a pack. */
 static const char MARK[] = ".lacquer-staging";
 static const char STAGING_SUFFIX[] = ".new-XXXXXX";
 
@@ -99,16 +100,30 @@ static void remove_staging(const char *folder) {
     rmdir(folder);
 }
 
-/* Its mark is there and its maker's lock, which dies with the maker, is not. */
-static bool is_dead(const char *staging) {
+static bool has_mark(const char *staging) {
     char mark[2 * PATH_MAX + sizeof MARK];
     struct stat info;
     snprintf(mark, sizeof mark, "%s/%s", staging, MARK);
-    if (lstat(mark, &info) != 0 || !S_ISREG(info.st_mode)) return false;
+    return lstat(mark, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+/* A kill between mark and exchange leaves a pack, or what is left of one that was being removed. */
+static void clear_pack(const char *staging) {
+    lq_contents contents;
+    if (lq_contents_read(&contents, staging, NULL) != LQ_OK) return;
+    if (lq_contents_check(&contents, staging, staging, NULL) == LQ_OK) lq_contents_remove(&contents, staging);
+    lq_contents_free(&contents);
+}
+
+/* The lock of its maker, which dies with the maker, tells a folder that is left over from one at work. */
+static void clear_leftover(const char *staging) {
     const int folder = open(staging, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    const bool dead = folder >= 0 && flock(folder, LOCK_EX | LOCK_NB) == 0;
-    if (folder >= 0) close(folder);
-    return dead;
+    if (folder < 0) return;
+    if (flock(folder, LOCK_EX | LOCK_NB) == 0) {
+        if (has_mark(staging)) remove_staging(staging);
+        else if (rmdir(staging) != 0) clear_pack(staging);
+    }
+    close(folder);
 }
 
 /* What runs that were killed left beside the target. */
@@ -126,7 +141,7 @@ static void clear_leftovers(const char *target) {
             strncmp(end, STAGING_SUFFIX, suffix - 6) != 0)
             continue;
         snprintf(staging, sizeof staging, "%s/%s", slash ? parent : ".", entry->d_name);
-        if (is_dead(staging)) remove_staging(staging);
+        clear_leftover(staging);
     }
     if (list) closedir(list);
 }

@@ -88,6 +88,16 @@ flock killed.new-CCCCCC "$lacquer" pack small.json -o killed >/dev/null
 [ ! -e killed.new-AAAAAA ] || fail "what kill -9 left is not cleared"
 [ -e killed.new-BBBBBB/thesis.tex ] || fail "a folder that only has the name was cleared"
 [ -e killed.new-CCCCCC ] || fail "the folder of a run at work was cleared"
+rm -rf killed.new-*
+for i in $(seq 1 60); do # at any moment, over a pack that is there
+    "$lacquer" pack small.json -o killed >/dev/null 2>&1 &
+    job=$!
+    sleep "0.0$((RANDOM % 40 + 10))"
+    kill -KILL "$job" 2>/dev/null || true
+    wait "$job" 2>/dev/null || true
+done
+"$lacquer" pack small.json -o killed >/dev/null || fail "after kills: $(ls -a killed)"
+diff -r good killed && [ -z "$(find . -maxdepth 1 -name 'killed.new-*')" ] || fail "kill -9 left $(ls -d killed.new-*)"
 
 # --------------------------------------------------- names that would write one thing over another
 names() { # FORMATS NAME...: a recipe of albedo tables of these names

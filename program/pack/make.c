@@ -60,6 +60,17 @@ static lq_status compute(const lq_recipe_table *t, const want *w, const lq_setti
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
 }
 
+/* Storing makes a folder of its own: a signal waits until that is gone. */
+static lq_status store(const pack_request *r, const char *key, lq_table *table, lq_factored *factored,
+                       lq_error *error) {
+    cli_signals_hold();
+    lq_status status = table ? lq_cache_store(r->cache, key, table, error)
+                             : lq_cache_store_factored(r->cache, key, factored, error);
+    cli_signals_release();
+    if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
+    return status;
+}
+
 /* A cache that cannot be written costs time, not the pack: said once. */
 static lq_status go_without(pack_request *r, lq_status status, const lq_error *error) {
     if (status != LQ_IO) return status;
@@ -83,8 +94,7 @@ static lq_status obtain(pack_request *r, const lq_recipe_table *t, const want *w
     *table = *r->cache ? lq_cache_find(r->cache, key, w->points ? NULL : t->axes, t->kind->axis_count) : NULL;
     if (!*table) {
         status = compute(t, w, &settings, table, error);
-        if (status == LQ_OK && *r->cache)
-            status = go_without(r, lq_cache_store(r->cache, key, *table, error), error);
+        if (status == LQ_OK && *r->cache) status = go_without(r, store(r, key, *table, NULL, error), error);
     }
     free(key);
     return status;
@@ -144,7 +154,7 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
     if (status == LQ_OK && !packed->factored) {
         status = factor(r, packed, error);
         if (status == LQ_OK && *r->cache)
-            status = go_without(r, lq_cache_store_factored(r->cache, key, packed->factored, error), error);
+            status = go_without(r, store(r, key, NULL, packed->factored, error), error);
     }
     free(key);
     return status;
