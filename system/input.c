@@ -25,7 +25,7 @@ static lq_status check(int file, const char *path, size_t largest, lq_error *err
 lq_status lq_input_open(FILE **in, const char *path, size_t largest, lq_error *error) {
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     *in = NULL;
-    if (file < 0) return lq_fail(error, LQ_IO, "cannot open %s: %s", path, strerror(errno));
+    if (file < 0) return lq_fail(error, LQ_IO, "cannot read %s: %s", path, strerror(errno));
     lq_status status = check(file, path, largest, error);
     if (status == LQ_OK && !(*in = fdopen(file, "rb")))
         status = lq_fail(error, LQ_NO_MEMORY, "no memory to read %s", path);

@@ -105,10 +105,35 @@ static void test_no_origin(void **state) {
     assert_non_null(strstr(report, "nonsense"));
 }
 
+/* One entry of 64 x 64, of which the default looks up 128: no sample may be needed to see it. */
+static void one_entry_among_many(void **state) {
+    (void)state;
+    const struct {
+        float value;
+        const char *says;
+    } planted[] = {{NAN, "is nan"}, {-1e30f, "is -1e+30"}, {INFINITY, "is inf"}, {0.5f, "is 0.5"}};
+    const lq_kind *kind = lq_kind_find("albedo", NULL);
+    const lq_settings settings = lq_settings_default();
+    lq_axis axes[2];
+    assert_int_equal(lq_kind_axes(kind, axes, NULL), LQ_OK);
+    for (size_t i = 0; i <= sizeof planted / sizeof *planted; i++) {
+        const bool sound = i == sizeof planted / sizeof *planted;
+        lq_table *table = NULL;
+        assert_int_equal(lq_precompute(kind, &settings, axes, NULL, &table, NULL), LQ_OK);
+        if (!sound) table->channels[0][40 * 64 + 37] = planted[i].value;
+        assert_int_equal(validate(table, "", report, sizeof report), sound ? 0 : 2);
+        if (!sound && (!strstr(report, planted[i].says) || !strstr(report, "entry mu=0.5873 alpha=0.63492")))
+            fail_msg("planted %g: %s", (double)planted[i].value, report);
+    }
+    lq_axis_free(&axes[0]);
+    lq_axis_free(&axes[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good_table),   cmocka_unit_test(test_false_fact), cmocka_unit_test(test_bias),
-        cmocka_unit_test(test_not_a_number), cmocka_unit_test(test_no_origin),
+        cmocka_unit_test(test_good_table), cmocka_unit_test(test_false_fact),
+        cmocka_unit_test(test_bias),       cmocka_unit_test(test_not_a_number),
+        cmocka_unit_test(test_no_origin),  cmocka_unit_test(one_entry_among_many),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -6,11 +6,24 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+static bool make_room(lq_certified *certified) {
+    const int room = certified->check_room > 0 ? 2 * certified->check_room : 32;
+    lq_check *checks = realloc(certified->checks, (size_t)room * sizeof *checks);
+    if (!checks) return false;
+    certified->checks = checks;
+    certified->check_room = room;
+    return true;
+}
 
 void lq_check_add(lq_certified *certified, const char *name, double value, double limit, const char *format,
                   ...) {
-    if (certified->check_count == LQ_CHECKS_MAX) return;
+    if (certified->check_count == certified->check_room && !make_room(certified)) {
+        certified->check_lost = true;
+        return;
+    }
     lq_check *check = &certified->checks[certified->check_count++];
     *check = (lq_check){.value = value, .limit = limit};
     check->outcome = isnan(limit) ? LQ_NOTED : value <= limit ? LQ_PASSED : LQ_FAILED;
@@ -31,9 +44,10 @@ void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t 
 }
 
 const lq_check *lq_certified_failure(const lq_certified *certified) {
+    static const lq_check lost = {.name = "judgements lost", .outcome = LQ_FAILED};
     for (int i = 0; i < certified->check_count; i++)
         if (certified->checks[i].outcome == LQ_FAILED) return &certified->checks[i];
-    return NULL;
+    return certified->check_lost ? &lost : NULL;
 }
 
 void lq_check_budget(lq_certified *certified) {
@@ -124,4 +138,7 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
 void lq_certified_free(lq_certified *certified) {
     lq_certificate_free(&certified->certificate);
     lq_subject_free(&certified->subject);
+    free(certified->checks);
+    certified->checks = NULL;
+    certified->check_count = certified->check_room = 0;
 }

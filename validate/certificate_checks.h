@@ -14,8 +14,6 @@ typedef struct lq_check {
     char detail[240];
 } lq_check;
 
-enum { LQ_CHECKS_MAX = 48 };
-
 /* The stored entries against the solver at a tenth of their tolerance; the entry that is furthest out counts
  * for `max`. count 0: there is no stored table. */
 typedef struct lq_integration {
@@ -29,8 +27,9 @@ typedef struct lq_certified {
     lq_budget budget;
     lq_certificate certificate;
     lq_integration integration;
-    int check_count;
-    lq_check checks[LQ_CHECKS_MAX];
+    int check_count, check_room;
+    lq_check *checks;
+    bool check_lost; /* there was no memory for one: the certificate has failed */
 } lq_certified;
 
 /* Adds one: failed where value > limit or NaN, noted where limit is NaN. `format` makes the detail; may be
@@ -41,7 +40,7 @@ void lq_check_add(lq_certified *certified, const char *name, double value, doubl
 /* "mu=0.1 alpha=0.5" of a point, into `text`. */
 void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t size);
 
-/* The first failed check, or NULL. */
+/* The first failed check, or NULL. A judgement that could not be kept has failed. */
 const lq_check *lq_certified_failure(const lq_certified *certified);
 
 /* What a whole certificate is made of. */

@@ -4,6 +4,7 @@
 
 #include "pca/factors.h"
 #include "system/status.h"
+#include "validate/entries.h"
 #include "validate/stream.h"
 
 #include <math.h>
@@ -16,25 +17,25 @@ static const double display_step = 1.0 / 255.0;
 
 /* --------------------------------------------------------------------------------------- range */
 
-/* How far `x` is outside of the physical range; NaN: infinitely. */
-static double outside(const lq_kind *kind, double x) {
-    if (isnan(x)) return INFINITY;
-    return fmax(fmax(kind->value_min - x, x - kind->value_max), 0.0);
+static void check_entries(lq_certified *certified) {
+    const lq_subject *s = &certified->subject;
+    const lq_entries found = lq_entries_look(s->table, s->origin.kind);
+    char at[160];
+    lq_point_text(s->origin.kind, found.at, at, sizeof at);
+    if (found.faults == 0)
+        lq_check_add(certified, "range stored", found.worst, LQ_RANGE_SLACK, "%zu entries", found.looked_at);
+    else
+        lq_check_add(certified, "range stored", found.worst, LQ_RANGE_SLACK,
+                     "%zu of %zu entries; the worst is %g in %s at %s", found.faults, found.looked_at,
+                     found.value, s->table->channel_names[found.channel], at);
 }
 
+/* Of factors every texel, of a table every entry. */
 static void check_stored_range(lq_certified *certified) {
     const lq_subject *s = &certified->subject;
-    const lq_kind *kind = s->origin.kind;
     double worst = 0.0;
-    if (!s->factored) {
-        const size_t entries = lq_table_entries(s->table);
-        for (int c = 0; c < s->table->channel_count; c++)
-            for (size_t i = 0; i < entries; i++)
-                worst = fmax(worst, outside(kind, (double)s->table->channels[c][i]));
-        /* one unit in the last place of a float */
-        lq_check_add(certified, "range stored", worst, 1e-7, "%zu entries", entries);
-        return;
-    }
+    if (s->table) check_entries(certified);
+    if (!s->factored) return;
     size_t texels = 0;
     for (int p = 0; p < s->factored->piece_count; p++)
         for (int f = 0; f < s->factored->pieces[p].factor_count; f++) {
@@ -55,7 +56,7 @@ static void check_decoded_range(lq_certified *certified) {
     lq_kind kind = *c->request.kind;
     if (c->request.relative) kind.value_min = 0.0, kind.value_max = INFINITY;
     for (size_t i = 0; i < c->points * (size_t)kind.channel_count; i++)
-        worst = fmax(worst, outside(&kind, decoded[i]));
+        worst = fmax(worst, lq_out_of_range(&kind, decoded[i]));
     lq_check_add(certified, "range decoded", worst, 1e-7, "%zu points", c->points);
 }
 

@@ -5,6 +5,7 @@
 #include "system/status.h"
 #include "validate/report_maps.h"
 #include "validate/report_ranks.h"
+#include "validate/report_text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -27,11 +28,10 @@ static const char style[] =
     "\n";
 
 static void put_text(FILE *out, const char *text) {
-    for (const char *c = text; *c; c++) {
-        if (*c == '<') fputs("&lt;", out);
-        else if (*c == '>') fputs("&gt;", out);
-        else if (*c == '&') fputs("&amp;", out);
-        else fputc(*c, out);
+    char code[LQ_REPORT_CODE_SIZE];
+    while (*text) {
+        text += lq_report_character(text, code);
+        fputs(code, out);
     }
 }
 

@@ -2,20 +2,17 @@
 #include "validate/report.h"
 
 #include "system/output.h"
+#include "validate/report_text.h"
 
 #include <math.h>
 
-/* Text of an attribute or element; what XML cannot hold becomes '?'. */
+/* Text of an attribute or element. */
 static lq_status put_text(lq_output *out, const char *text, lq_error *error) {
     lq_status status = LQ_OK;
-    for (const char *c = text; *c && status == LQ_OK; c++) {
-        const char *code = *c == '<'   ? "&lt;"
-                           : *c == '>' ? "&gt;"
-                           : *c == '&' ? "&amp;"
-                           : *c == '"' ? "&quot;"
-                                       : NULL;
-        const char plain = (unsigned char)*c < ' ' ? '?' : *c;
-        status = code ? lq_output_print(out, error, "%s", code) : lq_output_write(out, &plain, 1, error);
+    char code[LQ_REPORT_CODE_SIZE];
+    while (status == LQ_OK && *text) {
+        text += lq_report_character(text, code);
+        status = lq_output_print(out, error, "%s", code);
     }
     return status;
 }

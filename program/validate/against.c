@@ -4,6 +4,7 @@
 #include "program/message.h"
 #include "program/output.h"
 #include "program/verb.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +24,6 @@ static lq_status read_published(lq_table **table, const char *path, const valida
 static lq_status assume_origin(against_job *job, lq_error *error) {
     job->origin.kind = lq_kind_find(job->request->kind, error);
     if (!job->origin.kind) return LQ_BAD_INPUT;
-    if (!cli_settings_suit(&job->request->given, job->origin.kind)) return LQ_CANCELLED;
     job->origin.settings = job->request->settings.settings;
     const char *masking = lq_table_fact(job->other, "masking");
     if (masking && strcmp(masking, "separable") == 0) job->origin.settings.masking = LQ_SEPARABLE;
@@ -171,7 +171,7 @@ static lq_status fill_pairs(const against_job *job, bool stored, lq_drawn *drawn
             pairs[(size_t)c * count + i] = (lq_compared){(double)job->other->channels[c][drawn[i].entry],
                                                          values[c], job->allowance, 0.0};
         if (status == LQ_OK && !progress->report(progress->user, (double)(i + 1) / (double)count))
-            status = LQ_CANCELLED;
+            status = lq_fail(error, LQ_CANCELLED, "cancelled");
     }
     return status;
 }
@@ -237,7 +237,15 @@ static int report(const against_job *job) {
     return against_complaint(job) ? CLI_EXCEEDED : CLI_DONE;
 }
 
+/* Of a published FILE alone the options say how it was made; its kind must listen to them. */
+static bool settings_suit(const validate_request *request) {
+    const bool alone = !request->other && !request->axes && !request->diagnose;
+    const lq_kind *kind = alone ? lq_kind_find(request->kind, NULL) : NULL;
+    return !kind || cli_settings_suit(&request->given, kind);
+}
+
 int validate_against(const validate_request *request) {
+    if (!settings_suit(request)) return CLI_FAILED;
     against_job *job = calloc(1, sizeof *job);
     if (!job) return cli_fail("out of memory");
     job->request = request;
@@ -249,13 +257,8 @@ int validate_against(const validate_request *request) {
         status = measure(job, &bar.progress, &error);
         if (status == LQ_OK) status = diagnose(job, &bar.progress, &error);
         cli_progress_end(&bar);
-    } else if (status == LQ_CANCELLED) {
-        status = LQ_BAD_INPUT; /* its line is printed */
-        error.text[0] = '\0';
     }
-    int code = CLI_FAILED;
-    if (status == LQ_OK) code = report(job);
-    else if (error.text[0] || status == LQ_CANCELLED) code = cli_fail_status(status, &error);
+    const int code = status == LQ_OK ? report(job) : cli_fail_status(status, &error);
     lq_table_free(job->file);
     lq_table_free(job->other);
     lq_table_free(job->computed);

@@ -1,10 +1,13 @@
 /* measure.c - computes the points of `lacquer validate` and the lists of differences. */
 #include "program/validate/validate.h"
 
+#include "system/parallel.h"
+#include "system/status.h"
+#include "validate/certificate_checks.h"
+#include "validate/certificate_suspects.h"
 #include "validate/walk_kind.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -37,8 +40,7 @@ static lq_status prepare(validate_job *job, lq_error *error) {
         short_of_memory = !list->compared;
     }
     if (!short_of_memory) return LQ_OK;
-    snprintf(error->text, sizeof error->text, "no memory for %zu points", job->request.points);
-    return LQ_NO_MEMORY;
+    return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu points", job->request.points);
 }
 
 /* What is known at one point, each per channel. */
@@ -50,19 +52,23 @@ typedef struct values {
 } values;
 
 /* The solver is asked for a tenth of the tolerance, so that it can judge values of that tolerance. */
-static lq_status compute(const validate_job *job, const lq_drawn *drawn, size_t number, values *v,
-                         lq_error *error) {
+static lq_status solve(const validate_job *job, const double *at, values *v, lq_error *error) {
     const lq_kind *kind = job->origin.kind;
     lq_settings settings = job->origin.settings;
     settings.tolerance = fmax(0.1 * settings.tolerance, kind->finest_tolerance);
-    lq_status status = lq_eval(kind, &settings, drawn->at, v->exact, &v->estimate, error);
-    if (status == LQ_NOT_CONVERGED) status = LQ_OK; /* its estimate says so */
+    const lq_status status = lq_eval(kind, &settings, at, v->exact, &v->estimate, error);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* its estimate says so */
+}
+
+static lq_status compute(const validate_job *job, const lq_drawn *drawn, size_t number, values *v,
+                         lq_error *error) {
+    const lq_status status = solve(job, drawn->at, v, error);
     if (status != LQ_OK || !job->request.walk) return status;
     const lq_walk_run walk = {.samples = job->request.samples,
                               .seed = job->request.seed,
                               .purpose = number,
                               .threads = job->walk_threads};
-    return lq_walk_kind(kind, &settings, drawn->at, &walk, v->walk, error);
+    return lq_walk_kind(job->origin.kind, &job->origin.settings, drawn->at, &walk, v->walk, error);
 }
 
 /* Half a unit in the last place of a stored value in [0.5, 1]. */
@@ -101,6 +107,47 @@ static lq_status measure_point(validate_job *job, size_t i, lq_error *error) {
     return status;
 }
 
+/* The entry of a complaint: its axes and its value. */
+static void name_fault(validate_job *job, size_t index, int channel, double exact) {
+    const lq_table *table = job->table;
+    double at[LQ_MAX_AXES];
+    char point[160];
+    lq_entry_point(table, index, at);
+    lq_point_text(job->origin.kind, at, point, sizeof point);
+    snprintf(job->fault, sizeof job->fault, "entry %s of %s is %g, where %.6g is right", point,
+             table->channel_names[channel], (double)table->channels[channel][index], exact);
+}
+
+/* All entries: range, and whether those that stick out of their neighbours are right to. */
+static lq_status look_at_entries(validate_job *job, lq_error *error) {
+    lq_suspect list[LQ_SUSPECTS];
+    const lq_table *table = job->table;
+    const double tolerance = job->origin.settings.tolerance;
+    double worst = 0.0;
+    job->entries = lq_entries_look(table, job->origin.kind);
+    lq_suspects_find(table, tolerance, list);
+    lq_status status = LQ_OK;
+    for (int i = 0; status == LQ_OK && i < LQ_SUSPECTS; i++) {
+        if (!(list[i].score > 0.0)) continue;
+        lq_drawn drawn = {.entry = list[i].index};
+        values v = {.estimate = 0.0};
+        lq_entry_point(table, list[i].index, drawn.at);
+        status = solve(job, drawn.at, &v, error);
+        const double stored = (double)table->channels[list[i].channel][list[i].index];
+        const double exact = v.exact[list[i].channel], off = fabs(stored - exact);
+        job->suspects++;
+        if (status != LQ_OK || !(off > tolerance + v.estimate + rounding) || !(off > worst)) continue;
+        worst = off;
+        name_fault(job, list[i].index, list[i].channel, exact);
+    }
+    if (status != LQ_OK || job->entries.faults == 0) return status;
+    values v = {.estimate = 0.0};
+    status = solve(job, job->entries.at, &v, error);
+    if (status == LQ_OK)
+        name_fault(job, job->entries.index, job->entries.channel, v.exact[job->entries.channel]);
+    return status;
+}
+
 static lq_status reduce(validate_job *job, lq_error *error) {
     size_t judged = 0;
     for (int k = 0; k < VALIDATE_LISTS; k++)
@@ -114,35 +161,21 @@ static lq_status reduce(validate_job *job, lq_error *error) {
     return LQ_OK;
 }
 
+static lq_status turn(void *user, size_t i, int thread, lq_error *error) {
+    (void)thread;
+    return measure_point(user, i, error);
+}
+
 /* The points run side by side; where there are fewer than threads, the walks of one do instead. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error) {
     lq_status status = prepare(job, error);
     if (status != LQ_OK) return status;
     const size_t points = job->request.points;
-    const int threads = job->request.threads > 0 ? (int)job->request.threads : omp_get_max_threads();
+    const int threads = lq_parallel_threads(SIZE_MAX, (int)job->request.threads);
     const bool side_by_side = points >= (size_t)threads;
     job->walk_threads = side_by_side ? 1 : threads;
-    size_t done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (side_by_side)
-    for (size_t i = 0; i < points; i++) {
-        lq_status stop;
-#pragma omp atomic read
-        stop = status;
-        if (stop != LQ_OK) continue;
-        lq_error cause = {""};
-        stop = measure_point(job, i, &cause);
-#pragma omp critical(validate_point)
-        {
-            done++;
-            if (stop == LQ_OK && !progress->report(progress->user, (double)done / (double)points))
-                stop = LQ_CANCELLED;
-            if (stop != LQ_OK && status == LQ_OK) {
-                *error = cause;
-#pragma omp atomic write
-                status = stop;
-            }
-        }
-    }
+    status = lq_parallel(points, side_by_side ? threads : 1, turn, job, progress, error);
+    if (status == LQ_OK) status = look_at_entries(job, error);
     return status == LQ_OK ? reduce(job, error) : status;
 }
 
@@ -155,7 +188,9 @@ void validate_free(validate_job *job) {
 
 const char *validate_complaint(const validate_job *job) {
     const lq_comparison *stored = &job->lists[STORED_EXACT].result;
+    if (job->entries.faults > 0) return job->fault;
     if (!stored->explained) return "stored values are off by more than the tolerance they state";
+    if (job->fault[0]) return job->fault; /* one entry, where the sampled ones are right */
     for (int k = STORED_WALK; k < VALIDATE_LISTS; k++)
         if (job->lists[k].used && !job->lists[k].result.explained)
             return "noise does not explain the difference to the walk";

@@ -65,6 +65,9 @@ void validate_print_text(const validate_job *job) {
     print_head(job);
     print_errors(job);
     if (job->request.walk) print_scores(job);
+    printf("\nall %zu entries: %zu not finite or out of range; %zu that stick out of their neighbours were "
+           "compared\n",
+           job->entries.looked_at, job->entries.faults, job->suspects);
     const char *complaint = validate_complaint(job);
     printf("\n%s%s", complaint ? "FAILED: " : "passed", complaint ? complaint : "");
     if (job->request.budget > 0.0) printf(", budget %g", job->request.budget);
@@ -122,6 +125,10 @@ bool validate_print_json(const validate_job *job) {
     for (int k = 0; k < VALIDATE_LISTS; k++)
         if (job->lists[k].used)
             json_object_set_new(root, job->lists[k].key, list_json(job, &job->lists[k], k >= STORED_WALK));
+    json_object_set_new(root, "entries",
+                        json_pack("{s:I, s:I, s:I}", "looked_at", (json_int_t)job->entries.looked_at,
+                                  "faults", (json_int_t)job->entries.faults, "sticking_out",
+                                  (json_int_t)job->suspects));
     const char *complaint = validate_complaint(job);
     json_object_set_new(root, "passed", json_boolean(!complaint));
     json_object_set_new(root, "complaint", complaint ? json_string(complaint) : json_null());

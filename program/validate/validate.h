@@ -2,12 +2,14 @@
 #ifndef LACQUER_PROGRAM_VALIDATE_VALIDATE_H
 #define LACQUER_PROGRAM_VALIDATE_VALIDATE_H
 
+#include "program/options.h"
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/validate/certify.h"
 #include "tables/origin.h"
 #include "validate/compare.h"
 #include "validate/draw.h"
+#include "validate/entries.h"
 
 #include <stdbool.h>
 
@@ -50,6 +52,9 @@ typedef struct validate_job {
     lq_origin origin;
     int walk_threads;
     size_t channels, stored, between; /* points of either sort */
+    lq_entries entries;               /* what all of them show without a solver */
+    size_t suspects;                  /* entries that stick out of their neighbours, compared besides */
+    char fault[256];                  /* the entry that is wrong; "": none */
     lq_drawn *at;                     /* the stored ones, then those between */
     validate_list lists[VALIDATE_LISTS];
 } validate_job;
