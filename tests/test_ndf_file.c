@@ -211,7 +211,7 @@ static void bad_files_are_named_by_line(void **state) {
         write_file(bad[i].content);
         expect_refused(text, LQ_BAD_INPUT, message);
     }
-    expect_refused("file:/no/such/file.csv", LQ_IO, "cannot open /no/such/file.csv: No such file");
+    expect_refused("file:/no/such/file.csv", LQ_IO, "cannot read /no/such/file.csv: No such file");
     expect_refused("file", LQ_BAD_INPUT, "write file:PATH");
     expect_refused("file:/", LQ_IO, "cannot read /");
 }

@@ -86,7 +86,7 @@ refused 'lacks the function density' empty.so
 refused 'alpha from 0 to 1.5 is not a range' range.so
 refused 'D is negative or not finite at alpha = 1' negative.so
 refused 'D is negative or not finite at alpha = 1' nan.so
-refused 'cannot open no.so' no.so
+refused 'cannot read no.so' no.so
 refused 'is not loaded' ndf_plugin.c
 refused 'write plugin:PATH' ''
 echo "plugins: example, table, walk and refusals"
