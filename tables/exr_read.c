@@ -11,14 +11,10 @@
 #include <unistd.h>
 
 #include "system/status.h"
+#include "tables/exr_chunk.h"
 #include "tables/exr_layout.h"
 
 #define ACCEPTED "accepted is a table written by lacquer"
-
-enum {
-    DEFLATE_LIMIT = 1032, /* the most that one byte of deflate can become */
-    CHUNK_OVERHEAD = 16   /* bytes every chunk takes in a file beside its data: offset, row, size */
-};
 
 typedef struct reader {
     const char *path;
@@ -195,10 +191,11 @@ static lq_status check_window(reader *r, const lq_axis *axes, int axis_count, lq
 
 /* Before memory is asked for: could so few bytes hold that many values? */
 static lq_status check_capacity(const reader *r, size_t channels, lq_error *error) {
-    double chunks = (double)(r->height / (size_t)r->rows_per_chunk);
-    double bytes = (double)r->width * (double)r->height * (double)channels * sizeof(float);
-    double least = chunks * CHUNK_OVERHEAD + bytes / DEFLATE_LIMIT;
-    if ((double)r->size >= least) return LQ_OK;
+    const double row_bytes = (double)r->width * (double)channels * sizeof(float);
+    exr_compression_t compression;
+    const exr_result_t result = exr_get_compression(r->context, 0, &compression);
+    if (result != EXR_ERR_SUCCESS) return damaged(r, result, error);
+    if (lq_exr_may_hold(r->size, compression, (double)r->height, row_bytes, r->rows_per_chunk)) return LQ_OK;
     return lq_fail(error, LQ_FORMAT,
                    "%s: truncated: %" PRIu64 " bytes cannot hold its %zu x %zu values; " ACCEPTED, r->path,
                    r->size, r->width, r->height);
@@ -280,6 +277,9 @@ static void aim(const reader *r, exr_decode_pipeline_t *decode, size_t row) {
 static exr_result_t read_chunk(const reader *r, exr_decode_pipeline_t *decode, bool *started, size_t row) {
     exr_chunk_info_t chunk;
     exr_result_t result = exr_read_scanline_chunk_info(r->context, 0, (int)row, &chunk);
+    if (result == EXR_ERR_SUCCESS)
+        result = lq_exr_check_chunk(&chunk, r->size,
+                                    r->width * (size_t)r->table->channel_count * sizeof(float));
     if (result != EXR_ERR_SUCCESS) return result;
     if (*started) result = exr_decoding_update(r->context, 0, &chunk, decode);
     else result = exr_decoding_initialize(r->context, 0, &chunk, decode);

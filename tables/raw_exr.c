@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/input.h"
 #include "system/status.h"
+#include "tables/exr_chunk.h"
 #include "tables/raw.h"
 
 enum { MOST_CHANNELS = 64 };
@@ -12,6 +14,8 @@ enum { MOST_CHANNELS = 64 };
 
 typedef struct image {
     const char *path;
+    uint64_t size; /* of the file */
+    uint64_t row_bytes;
     exr_context_t context;
     size_t width, height;
     int left, top;
@@ -33,9 +37,13 @@ static lq_status read_shape(image *im, lq_error *error) {
     exr_attr_box2i_t window;
     exr_storage_t storage;
     const exr_attr_chlist_t *list;
+    exr_compression_t compression;
+    int rows_per_chunk = 1;
     exr_result_t result = exr_get_data_window(im->context, 0, &window);
     if (result == EXR_ERR_SUCCESS) result = exr_get_storage(im->context, 0, &storage);
     if (result == EXR_ERR_SUCCESS) result = exr_get_channels(im->context, 0, &list);
+    if (result == EXR_ERR_SUCCESS) result = exr_get_compression(im->context, 0, &compression);
+    if (result == EXR_ERR_SUCCESS) result = exr_get_scanlines_per_chunk(im->context, 0, &rows_per_chunk);
     if (result != EXR_ERR_SUCCESS) return broken(im, result, error);
     if (storage != EXR_STORAGE_SCANLINE || list->num_channels > MOST_CHANNELS)
         return lq_fail(error, LQ_FORMAT, "%s: accepted are EXR files of scan lines and up to %d channels",
@@ -51,11 +59,15 @@ static lq_status read_shape(image *im, lq_error *error) {
             list->entries[c].pixel_type == EXR_PIXEL_UINT)
             return lq_fail(error, LQ_FORMAT, "%s: channel %.40s is subsampled or of whole numbers", im->path,
                            im->names[c]);
+        im->row_bytes += im->width * (list->entries[c].pixel_type == EXR_PIXEL_HALF ? 2 : 4);
     }
     const uint64_t pixels = (uint64_t)im->width * im->height;
     if (im->width < 1 || im->height < 1 || pixels * (uint64_t)im->channels > MOST_PIXELS)
         return lq_fail(error, LQ_FORMAT, "%s: %zu x %zu pixels cannot be a table", im->path, im->width,
                        im->height);
+    if (!lq_exr_may_hold(im->size, compression, (double)im->height, (double)im->row_bytes, rows_per_chunk))
+        return lq_fail(error, LQ_FORMAT, "%s: truncated or damaged: %zu bytes cannot hold %zu x %zu pixels",
+                       im->path, (size_t)im->size, im->width, im->height);
     im->planes = calloc(pixels * (size_t)im->channels, sizeof *im->planes);
     return im->planes ? LQ_OK
                       : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu x %zu pixels", im->width, im->height);
@@ -71,6 +83,7 @@ static int index_of(const image *im, const char *name) {
 static exr_result_t read_rows(const image *im, exr_decode_pipeline_t *decode, bool *started, int row) {
     exr_chunk_info_t chunk;
     exr_result_t result = exr_read_scanline_chunk_info(im->context, 0, row, &chunk);
+    if (result == EXR_ERR_SUCCESS) result = lq_exr_check_chunk(&chunk, im->size, im->row_bytes);
     if (result != EXR_ERR_SUCCESS) return result;
     if (*started) result = exr_decoding_update(im->context, 0, &chunk, decode);
     else result = exr_decoding_initialize(im->context, 0, &chunk, decode);
@@ -119,15 +132,29 @@ static lq_status interleave(const image *im, const char *const *channels, int co
     return LQ_OK;
 }
 
+/* A pipe or a device is refused here: OpenEXR would wait for it. */
+static lq_status measure_file(image *im, lq_error *error) {
+    FILE *in;
+    const lq_status status = lq_input_open(&in, im->path, SIZE_MAX / 2, error);
+    if (status != LQ_OK) return status;
+    const bool ended = fseeko(in, 0, SEEK_END) == 0;
+    im->size = ended ? (uint64_t)ftello(in) : 0;
+    fclose(in);
+    return LQ_OK;
+}
+
 lq_status lq_raw_read_exr(lq_raw *raw, const char *path, const char *const *channels, int channel_count,
                           lq_error *error) {
     image im = {.path = path};
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = hush;
+    setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    lq_status status = measure_file(&im, error);
+    if (status != LQ_OK) return status;
     const exr_result_t result = exr_start_read(&im.context, path, &setup);
     if (result == EXR_ERR_FILE_ACCESS) return lq_fail(error, LQ_IO, "cannot read %s: %m", path);
     if (result != EXR_ERR_SUCCESS) return broken(&im, result, error);
-    lq_status status = read_shape(&im, error);
+    status = read_shape(&im, error);
     if (status == LQ_OK) status = read_planes(&im, error);
     if (status == LQ_OK) status = interleave(&im, channels, channels ? channel_count : 1, raw, error);
     free(im.planes);
