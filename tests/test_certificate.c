@@ -227,12 +227,14 @@ static void test_tables_of_a_folder_agree(void **state) {
     assert_true(check_named(&list[2], "reciprocity")->value < 1e-4);
     assert_true(check_named(&list[3], "reciprocity")->value < 1e-4);
     fakes[1].bad = 1.03;
+    for (int i = 0; i < 4; i++) lq_certified_free(&list[i]);
     pack_of_fakes(list, fakes);
     assert_near(check_named(&list[1], "R + T")->value, 0.03 * 0.96, 1e-4);
     assert_int_equal(check_named(&list[1], "R + T")->outcome, LQ_FAILED);
     assert_int_equal(check_named(&list[3], "furnace")->outcome, LQ_FAILED);
     assert_int_equal(check_named(&list[2], "reciprocity")->outcome, LQ_FAILED);
     assert_int_equal(check_named(&list[3], "reciprocity")->outcome, LQ_PASSED);
+    for (int i = 0; i < 4; i++) lq_certified_free(&list[i]);
     free(list);
 }
 

@@ -54,7 +54,7 @@ static void test_writes(void **state) {
         lq_stack *s = parse(texts[i], LQ_STACK_RANGES), *copy;
         assert_int_equal(lq_stack_text(s, &once, NULL), LQ_OK);
         lq_stack *again = parse(once, LQ_STACK_RANGES);
-        assert_memory_equal(again->layers, s->layers, s->layer_count * sizeof *s->layers);
+        assert_int_equal(again->layer_count, s->layer_count); /* the rest by the texts: layers have padding */
         assert_int_equal(lq_stack_copy(&copy, again, NULL), LQ_OK);
         assert_int_equal(lq_stack_text(copy, &twice, NULL), LQ_OK);
         assert_string_equal(once, twice);
