@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-static bool checksum(const char *folder, const char *name, char *text) {
+bool lq_contents_checksum(const char *folder, const char *name, char *text) {
     char path[PATH_MAX + LQ_PACK_FILE_NAME + 2], *bytes;
     size_t size;
     snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -37,7 +37,7 @@ json_t *lq_contents_list(const char *folder) {
     bool fine = files && count >= 0;
     for (int i = 0; i < count; i++) {
         char text[9];
-        fine = fine && checksum(folder, entries[i]->d_name, text) &&
+        fine = fine && lq_contents_checksum(folder, entries[i]->d_name, text) &&
                json_object_set_new(files, entries[i]->d_name, json_string(text)) == 0;
         free(entries[i]);
     }
@@ -105,7 +105,8 @@ static const char *complaint(const lq_contents *contents, const char *folder, co
     if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0 || strcmp(name, LQ_MANIFEST) == 0) return NULL;
     const lq_pack_file *file = find(contents, name);
     if (!file) return "is not part of the pack in it";
-    return checksum(folder, name, sum) && strcmp(sum, file->crc32) == 0 ? NULL : "was changed since";
+    return lq_contents_checksum(folder, name, sum) && strcmp(sum, file->crc32) == 0 ? NULL
+                                                                                    : "was changed since";
 }
 
 lq_status lq_contents_check(const lq_contents *contents, const char *folder, const char *shown,

@@ -23,6 +23,10 @@ typedef struct lq_contents {
     lq_pack_file *files; /* without the manifest */
 } lq_contents;
 
+/* The CRC-32 of a file of `folder` as a manifest has it, 8 hexadecimal digits and a zero; false: it cannot be
+ * read. */
+bool lq_contents_checksum(const char *folder, const char *name, char *text);
+
 /* "files" of a manifest: every regular file of `folder`, by name, with its checksum; NULL: out of memory, or
  * a file cannot be read. */
 json_t *lq_contents_list(const char *folder);

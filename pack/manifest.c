@@ -4,17 +4,16 @@
 #include "pack/contents.h"
 #include "pack/source.h"
 #include "pca/factors_json.h"
-#include "system/input.h"
 #include "system/output.h"
 #include "system/status.h"
 #include "tables/exr_layout.h"
 
 #include <jansson.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 size_t lq_packed_images(const lq_packed *packed) {
     return packed->factored ? packed->factors.count : 1;
@@ -53,20 +52,7 @@ static json_t *describe_axis(const lq_axis *axis, int a) {
                      "u = ((value - min) / (max - min))^(1 / exponent), then u (1 - 1/texels) + 0.5/texels");
 }
 
-/* Of a file that is there already: with it a reader knows that the file is as it was made. */
-static void add_checksum(json_t *item, const char *folder, const char *name) {
-    char path[PATH_MAX + 128], text[16], *bytes;
-    size_t size;
-    lq_error ignored = {""};
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (lq_input_read(path, &bytes, &size, &ignored) != LQ_OK) return;
-    snprintf(text, sizeof text, "%08lx", crc32_z(0, (const unsigned char *)bytes, size));
-    json_object_set_new(item, "crc32", json_string(text));
-    free(bytes);
-}
-
-static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image,
-                              const char *folder) {
+static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image, json_t *sums) {
     static const char *const hints[LQ_CONTAINERS] = {
         "KTX 2.0",
         "KTX 2.0, zstd",
@@ -81,7 +67,7 @@ static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, 
         if (!recipe->containers[c]) continue;
         snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
         json_t *item = json_pack("{s:s, s:s}", "file", name, "format", hints[c]);
-        add_checksum(item, folder, name);
+        json_object_set(item, "crc32", json_object_get(sums, name)); /* no such file: left out */
         json_array_append_new(files, item);
     }
     return files;
@@ -98,7 +84,7 @@ static void add_binaries(const lq_packed *packed, json_t *files) {
 }
 
 /* Each factor: the argument of the decode function, its axes and its files. */
-static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed, const char *folder) {
+static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed, json_t *sums) {
     json_t *textures = json_array();
     for (size_t i = 0; i < packed->factors.count; i++) {
         const lq_bases *bases = &packed->factors.bases[i];
@@ -113,7 +99,7 @@ static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed
                                         (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count,
                                         "layers", (json_int_t)bases->image.layers, "layout",
                                         "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
-                                        describe_files(recipe, packed, i, folder)));
+                                        describe_files(recipe, packed, i, sums)));
     }
     return textures;
 }
@@ -171,10 +157,10 @@ static json_t *describe_fixed(const lq_recipe_table *from) {
     return fixed;
 }
 
-static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, const char *folder) {
+static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, json_t *sums) {
     const lq_texture *texture = &packed->texture;
     const lq_recipe_table *from = packed->from;
-    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0, folder);
+    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0, sums);
     char function[64];
     snprintf(function, sizeof function, "lacquer_%s",
              packed->factored ? packed->factors.name : texture->name);
@@ -183,7 +169,7 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, 
                               function, "bytes", (json_int_t)lq_packed_bytes(packed));
     if (packed->factored) {
         json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
-        json_object_set_new(table, "textures", describe_factors(recipe, packed, folder));
+        json_object_set_new(table, "textures", describe_factors(recipe, packed, sums));
         json_object_set_new(table, "structure", describe_structure(packed->factored));
         json_object_set_new(table, "table-axes", describe_table_axes(from));
     } else {
@@ -208,9 +194,10 @@ lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, co
     char path[PATH_MAX + 64];
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
     json_t *tables = json_array(), *sources = json_array();
+    json_t *sums = lq_contents_list(folder); /* NULL: json_pack below says so */
     size_t bytes = 0;
     for (size_t i = 0; i < recipe->count; i++) {
-        json_array_append_new(tables, describe_table(recipe, &packed[i], folder));
+        json_array_append_new(tables, describe_table(recipe, &packed[i], sums));
         bytes += lq_packed_bytes(&packed[i]);
     }
     for (int l = 0; l < LQ_LANGUAGES; l++)
@@ -220,7 +207,7 @@ lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, co
                   LQ_PACK_VERSION, "pack", recipe->name, "made-by", "lacquer " LQ_VERSION, "orientation",
                   "texel 0 of every axis is its min and is stored first", "sampler",
                   "linear filter, clamp to edge, no mip levels", "texture-bytes", (json_int_t)bytes, "decode",
-                  sources, "tables", tables, "files", lq_contents_list(folder));
+                  sources, "tables", tables, "files", sums);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     if (!text) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);

@@ -5,7 +5,6 @@
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/factors_json.h"
-#include "system/input.h"
 #include "system/status.h"
 #include "tables/axis.h"
 #include "tables/exr_layout.h"
@@ -16,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <zlib.h>
 
 /* What is being read. */
 typedef struct reader {
@@ -53,14 +51,10 @@ static size_t count_differing(const lq_image *a, const lq_image *b) {
     return count;
 }
 
-static bool is_altered(json_t *checksum, const char *path) {
-    char *bytes, text[16];
-    size_t size;
-    lq_error ignored = {""};
-    if (!json_is_string(checksum) || lq_input_read(path, &bytes, &size, &ignored) != LQ_OK) return false;
-    snprintf(text, sizeof text, "%08lx", crc32_z(0, (const unsigned char *)bytes, size));
-    free(bytes);
-    return strcmp(text, json_string_value(checksum)) != 0;
+static bool is_altered(json_t *checksum, const char *folder, const char *file) {
+    char text[9];
+    return json_is_string(checksum) && lq_contents_checksum(folder, file, text) &&
+           strcmp(text, json_string_value(checksum)) != 0;
 }
 
 /* All files of one image into `image`, whose sizes are set. */
@@ -81,7 +75,7 @@ static lq_status read_files(const reader *r, json_t *files, lq_image *image, lq_
         snprintf(path, sizeof path, "%s/%s", r->folder, file);
         if (status == LQ_OK) status = lq_image_read(before ? &other : image, container, path, r->error);
         const size_t differing = status == LQ_OK && before ? count_differing(image, &other) : 0;
-        const bool altered = status == LQ_OK && is_altered(json_object_get(item, "crc32"), path);
+        const bool altered = status == LQ_OK && is_altered(json_object_get(item, "crc32"), r->folder, file);
         if ((differing || altered) && !*s->suspect) snprintf(s->suspect, sizeof s->suspect, "%s", file);
         s->differing += differing;
         s->altered += altered;

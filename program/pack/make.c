@@ -14,7 +14,7 @@
 /* ------------------------------------------------------------------------- tables and their checks */
 
 /* All that determines a table: the program, the kind, the settings and every node. NULL: out of memory. */
-static char *write_key(pack_request *r, const lq_recipe_table *t, const char *what) {
+static char *write_key(const pack_request *r, const lq_recipe_table *t, const char *what) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
