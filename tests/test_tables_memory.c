@@ -13,43 +13,7 @@
 #include <unistd.h>
 
 #include "lacquer.h"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CAN_FAIL 1 /* elsewhere the allocator cannot be replaced this way */
-#else
-#define CAN_FAIL 0
-#endif
-
-/* Allocations left before one fails; negative: none will. Tables this small use one thread. */
-static volatile long countdown = -1; /* volatile: the compiler believes that malloc does not read it */
-
-#if CAN_FAIL
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *block, size_t size);
-
-static bool fails_now(void) {
-    return countdown >= 0 && countdown-- == 0;
-}
-
-void *malloc(size_t size) {
-    return fails_now() ? NULL : __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size) {
-    return fails_now() ? NULL : __libc_calloc(count, size);
-}
-
-void *realloc(void *block, size_t size) {
-    return fails_now() ? NULL : __libc_realloc(block, size);
-}
-#endif
-
-/* Valgrind, which comes in by LD_PRELOAD, puts its own allocator before ours in part of the libraries. */
-static bool can_fail(void) {
-    const char *preload = getenv("LD_PRELOAD");
-    return CAN_FAIL && !(preload && strstr(preload, "vgpreload"));
-}
+#include "tests/failing_malloc.h"
 
 static lq_status make_table(lq_table **table, lq_error *error) {
     lq_axis axes[2];
