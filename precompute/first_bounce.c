@@ -89,13 +89,24 @@ double lq_first_bounce_estimate(double change, double older) {
     return older > 0.0 ? fmax(2.0 * change, 0.2 * older) : 6.0 * change;
 }
 
+/* The rules of the levels that some cosine needed: the finest cost as much as a coarse integral. */
+typedef struct ladder {
+    int made;
+    lq_facet_rule rules[RESOLUTIONS];
+} ladder;
+
+static const lq_facet_rule *rule_at(ladder *l, int level) {
+    for (; l->made <= level; l->made++)
+        lq_facet_rule_make(&l->rules[l->made], resolutions[l->made][0], resolutions[l->made][1]);
+    return &l->rules[level];
+}
+
 static double converge(const lq_ndf *ndf, double alpha, lq_masking masking, double mu,
-                       const lq_curves *curves, double tolerance, const lq_facet_rule *rules,
-                       double *escaping) {
+                       const lq_curves *curves, double tolerance, ladder *rules, double *escaping) {
     double shares[2][LQ_CURVES_MAX * SHARES], remaining[LQ_CURVES_MAX], estimate = INFINITY, older = 0.0;
     for (int level = 0; level < RESOLUTIONS && estimate > tolerance; level++) {
         double *now = shares[level % 2], *before = shares[1 - level % 2];
-        integrate(ndf, alpha, masking, mu, curves, &rules[level], escaping, remaining, now);
+        integrate(ndf, alpha, masking, mu, curves, rule_at(rules, level), escaping, remaining, now);
         if (level == 0) continue;
         const double change = change_of(now, before, curves->count);
         estimate = fmax(lq_first_bounce_estimate(change, older), 0.1 * tolerance);
@@ -107,11 +118,9 @@ static double converge(const lq_ndf *ndf, double alpha, lq_masking masking, doub
 double lq_first_bounce_converged(const lq_ndf *ndf, double alpha, lq_masking masking, const double *mu,
                                  size_t count, const lq_curves *curves, double tolerance, double *escaping) {
     double estimate = 0.0;
-    lq_facet_rule rules[RESOLUTIONS];
-    for (int level = 0; level < RESOLUTIONS; level++)
-        lq_facet_rule_make(&rules[level], resolutions[level][0], resolutions[level][1]);
+    ladder rules = {.made = 0};
     for (size_t m = 0; m < count; m++)
-        estimate = fmax(estimate, converge(ndf, alpha, masking, mu[m], curves, tolerance, rules,
+        estimate = fmax(estimate, converge(ndf, alpha, masking, mu[m], curves, tolerance, &rules,
                                            escaping + m * (size_t)curves->count));
     return estimate;
 }
