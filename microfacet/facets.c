@@ -133,6 +133,8 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     fan->sin_d = sin(d);
     double cos_image, sin_image;
     image_angle(w, fan, &cos_image, &sin_image);
+    fan->cos_image = cos_image;
+    fan->sin_image = sin_image;
 
     /* GGX has 1/(1 - k^2 m_z^2)^2, k^2 = 1 - alpha^2; lambda flattens the nearer pole, m_z = 1/k. */
     const double a2 = w->alpha * w->alpha, k = sqrt(fmax(1.0 - a2, 0.0)), gap = a2 / (1.0 + k);

@@ -26,6 +26,7 @@ enum { LQ_FAN_MAX = 128 };
 /* The facets at one angle d from v, above and below the split of the azimuth. */
 typedef struct lq_fan {
     double d, cos_d, sin_d;
+    double cos_image, sin_image; /* of the angle between v and the image: 2d, or d - t */
     int up;    /* facets [0, up) send light away from the surface, ... */
     int count; /* ... facets [up, count) back towards it */
     /* Of each facet: |cosine| of the direction it sends light to, z component of e(psi), and its weight

@@ -63,13 +63,16 @@ static void resolve(lq_panels *panels, const lq_fresnel_singularity *all, int co
     }
 }
 
-static void make_panels(lq_curves *curves) {
+void lq_fresnel_panels(lq_panels *panels, const double *n, const double *kappa, int count) {
     lq_fresnel_singularity all[2 * LQ_CURVES_MAX];
-    int count = 0;
-    for (int k = 1; k < curves->count; k++, count += 2)
-        lq_fresnel_singularities(curves->n[k], curves->kappa[k], all + count);
-    lq_panels_start(&curves->panels, 0.0, half_pi);
-    resolve(&curves->panels, all, count);
+    for (int k = 0; k < count; k++) lq_fresnel_singularities(n[k], kappa[k], all + 2 * k);
+    lq_panels_start(panels, 0.0, half_pi);
+    resolve(panels, all, 2 * count);
+}
+
+/* The first curve is the constant 1. */
+static void make_panels(lq_curves *curves) {
+    lq_fresnel_panels(&curves->panels, curves->n + 1, curves->kappa + 1, curves->count - 1);
 }
 
 void lq_curves_conductor(lq_curves *curves, double n, double kappa) {

@@ -43,4 +43,8 @@ lq_status lq_curves_basis(lq_curves *curves, const double *n, const double *kapp
 /* The `count` curves at one angle of incidence d with cosine cos_d. */
 void lq_curves_at(const lq_curves *curves, double cos_d, double *values);
 
+/* Panels of the angle between ray and facet that suit the reflectances of `count` materials, LQ_CURVES_MAX at
+ * most. */
+void lq_fresnel_panels(lq_panels *panels, const double *n, const double *kappa, int count);
+
 #endif

@@ -3,14 +3,17 @@
 
 #include "microfacet/fresnel.h"
 #include "precompute/first_bounce.h"
+#include "precompute/hits.h"
 #include "precompute/kernels.h"
-#include "precompute/krylov.h"
 #include "precompute/rough_level.h"
 #include "system/status.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* What the passes that are not made may add up to. */
+static const double SETTLED = 1e-9;
 
 /* One side: the relative index of the other, where its reflectance kinks, and its facet operators: row i of a
  * falling (rising) ray over the 4 n directions it may be sent to: own side rising, own side falling, other
@@ -161,133 +164,29 @@ static bool interface_make(interface *f, const lq_rough *rough, double eta, cons
     return ok;
 }
 
-/* ------------------------------------------------------------------------------ iteration */
+/* ----------------------------------------------------------------------------- one batch */
 
 /* One batch of rewards, a lane each. */
 typedef struct solution {
-    lq_v8 *reward;    /* [side * nodes + j], of the rising nodes */
-    lq_v8 *leaving;   /* [side * LQ_LEAVING + j], of the leaving ones */
-    lq_v8 *value[2];  /* E: [depth * 2 nodes + (rising, falling)] */
-    lq_v8 *before[2]; /* C: likewise, one side after the other */
+    lq_hits_values hits;
+    lq_v8 *leaving; /* rewards, [side * LQ_LEAVING + j], of the leaving nodes */
 } solution;
 
 static bool solution_make(solution *x, const interface *f) {
-    const size_t size = (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
-    lq_v8 *all = (lq_v8 *)(void *)lq_zeros((4 * size + 2 * (size_t)f->nodes + 2 * LQ_LEAVING) * LQ_LANES);
-    *x = (solution){.reward = all + 4 * size, .leaving = all + 4 * size + 2 * (size_t)f->nodes};
-    for (int s = 0; s < 2; s++) {
-        x->value[s] = all + (size_t)s * size;
-        x->before[s] = all + (size_t)(2 + s) * size;
-    }
-    return all;
+    x->leaving = (lq_v8 *)(void *)lq_zeros((size_t)(2 * LQ_LEAVING * LQ_LANES));
+    if (x->leaving && lq_hits_values_make(&x->hits, f->level)) return true;
+    free(x->leaving);
+    return false;
 }
 
 static void solution_free(solution *x) {
-    free(x->value[0]);
-}
-
-static lq_two_sided kernel_of(const interface *f, const solution *x, int s) {
-    const side *a = &f->sides[s];
-    return (lq_two_sided){.nodes = f->nodes,
-                          .depths = f->level->depths.count,
-                          .fall = a->fall,
-                          .rise = a->rise,
-                          .travel_down = f->level->travel_down,
-                          .travel_up = f->level->travel_up,
-                          .own = x->value[s],
-                          .other = x->value[1 - s],
-                          .before = x->before[s],
-                          .reward = x->reward + s * f->nodes};
-}
-
-/* Every pass adds a hit. A few dozen do where the media differ; after that a Krylov space is the shorter way.
- */
-enum { PASSES = 60, PRODUCTS = 1200 };
-
-/* What the passes that are not made may add up to. */
-static const double SETTLED = 1e-9;
-
-/* Residuals add up over as many facets as light meets. */
-static const double RESIDUAL = 1e-9;
-
-static size_t half_size(const interface *f) {
-    return (size_t)f->level->depths.count * 2 * (size_t)f->nodes;
-}
-
-/* E of both sides from C. Returns the largest change. */
-static double travel(const interface *f, const solution *x) {
-    double change = 0.0;
-    for (int s = 0; s < 2; s++) {
-        const lq_two_sided k = kernel_of(f, x, s);
-        change = fmax(change, lq_solver_kernels_get()->travel(&k, f->level->survival));
-    }
-    return change;
-}
-
-/* C of both sides from E. */
-static void meet(const interface *f, const solution *x) {
-    for (int s = 0; s < 2; s++) {
-        const lq_two_sided k = kernel_of(f, x, s);
-        lq_solver_kernels_get()->meet(&k);
-    }
-}
-
-static bool is_energy(const interface *f, const solution *x) {
-    for (size_t q = 0; q < half_size(f); q++)
-        if (!(fabs(x->value[0][q][0]) < 10.0 && fabs(x->value[1][q][0]) < 10.0)) return false; /* NaN too */
-    return true;
-}
-
-static bool solve_by_passes(const interface *f, solution *x) {
-    double change = 1.0, left = 1.0;
-    for (int pass = 0; pass < PASSES && left > SETTLED && change < 10.0; pass++) {
-        const double before = change;
-        change = travel(f, x);
-        meet(f, x);
-        /* The changes fall like a geometric series: what all the later ones would add. */
-        left = change < before ? change * fmax(change / (before - change), 1.0) : 1.0;
-    }
-    return left <= SETTLED && is_energy(f, x);
-}
-
-/* One pass without the reward, from a C to another: what the Krylov space is made of. */
-typedef struct one_pass {
-    const interface *f;
-    solution unpaid;
-} one_pass;
-
-static void pass_unpaid(void *user, const lq_v8 *before, lq_v8 *after) {
-    one_pass *p = user;
-    const size_t size = half_size(p->f);
-    memcpy(after, before, 2 * size * sizeof *after);
-    for (int s = 0; s < 2; s++) p->unpaid.before[s] = after + (size_t)s * size;
-    travel(p->f, &p->unpaid);
-    meet(p->f, &p->unpaid);
-}
-
-/* C of the light that has met one facet is the right side. False where that does not settle either: rays that
- * graze a fine level meet hundreds of facets, and its interpolation can overshoot by enough to matter then. A
- * coarser level holds. */
-static bool solve_by_krylov(const interface *f, solution *x) {
-    const size_t size = half_size(f);
-    lq_v8 *right = (lq_v8 *)(void *)lq_zeros((2 * size + (size_t)(2 * f->nodes)) * LQ_LANES);
-    if (!right) return false;
-    one_pass p = {f, *x};
-    p.unpaid.reward = right + 2 * size;
-    memset(x->before[0], 0, 2 * size * sizeof(lq_v8));
-    travel(f, x);
-    solution first = *x;
-    for (int s = 0; s < 2; s++) first.before[s] = right + (size_t)s * size;
-    meet(f, &first);
-    const double left = lq_krylov_solve(pass_unpaid, &p, 2 * size, right, x->before[0], PRODUCTS, RESIDUAL);
-    travel(f, x);
-    free(right);
-    return left >= 0.0 && left <= 10.0 * RESIDUAL && is_energy(f, x);
+    lq_hits_values_free(&x->hits);
+    free(x->leaving);
 }
 
 static bool solve(const interface *f, solution *x) {
-    memset(x->before[0], 0, 2 * half_size(f) * sizeof(lq_v8));
-    return solve_by_passes(f, x) || solve_by_krylov(f, x);
+    const lq_hits hits = {f->level, 2, {f->sides[0].fall, f->sides[1].fall}, {f->sides[0].rise, f->sides[1].rise}};
+    return lq_hits_solve(&hits, &x->hits, SETTLED);
 }
 
 /* -------------------------------------------------------------------------------- readout */
@@ -393,12 +292,12 @@ static void read_multiple(const interface *f, int s, const reader *r, const solu
     const lq_solver_kernels *kernels = lq_solver_kernels_get();
     lq_v8 sum, refracted, mean[2 * LQ_NODES_MAX];
     read_direct(s, r, x, &sum);
-    kernels->average(depths, 2 * n, r->arrival, false, x->before[s], mean);
+    kernels->average(depths, 2 * n, r->arrival, false, x->hits.before[s], mean);
     for (int j = 0; j < n; j++) sum += r->staying[j] * mean[j];
-    kernels->contract(depths, n, r->refracted, x->before[1 - s], &refracted);
+    kernels->contract(depths, n, r->refracted, x->hits.before[1 - s], &refracted);
     for (int way = 0; way < 2; way++) {
         const int t = way == 0 ? s : 1 - s;
-        kernels->average(depths, 2 * n, r->arrival, t != s, x->value[t], mean);
+        kernels->average(depths, 2 * n, r->arrival, t != s, x->hits.value[t], mean);
         for (int j = 0; j < n; j++) sum += r->row[(2 * way + 1) * n + j] * mean[n + j];
     }
     *value = sum + refracted;
@@ -423,11 +322,11 @@ static bool counts_energy(const lq_question *q) {
 static void load_rewards(const interface *f, const lq_question *q, const lq_leaving *at, size_t first,
                          size_t count, solution *x) {
     const int n = f->nodes;
-    memset(x->reward, 0, (2 * (size_t)n + 2 * LQ_LEAVING) * sizeof(lq_v8));
+    memset(x->hits.reward, 0, (2 * (size_t)n + 2 * LQ_LEAVING) * sizeof(lq_v8));
     for (size_t l = 0; l < count; l++) {
         const double tau = q->tau[first + l];
         const int payer = is_complement(q, tau) ? q->side : q->reward_side;
-        for (int j = 0; j < n; j++) x->reward[payer * n + j][l] = reward_of(tau, f->level->axis.mu[j]);
+        for (int j = 0; j < n; j++) x->hits.reward[payer * n + j][l] = reward_of(tau, f->level->axis.mu[j]);
         for (int j = 0; j < at->axis.count; j++)
             x->leaving[payer * LQ_LEAVING + j][l] = reward_of(tau, at->axis.mu[j]);
     }

@@ -17,10 +17,13 @@ typedef double lq_v8 __attribute__((vector_size(64)));
 
 /* Where a cosine lies on the axis of the interpolation nodes:
  *     x = scale asinh(t / alpha) + shift,
- * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. */
+ * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. Where `root` is set, it is
+ *     x = scale sqrt(cosine - from) + shift. */
 typedef struct lq_cosine_map {
     double inverse_alpha, scale, shift;
     int half_angle;
+    int root;
+    double from;
 } lq_cosine_map;
 
 /* The equation of one batch, A_d R + R A_u = S (conductor.c). Arrays of vectors hold one material a lane. */

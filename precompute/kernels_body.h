@@ -28,7 +28,14 @@ static inline double log_positive(double x) {
 static void map_cosines(const lq_cosine_map *map, size_t count, const double *restrict cosine,
                         double *restrict x) {
     const double inverse = map->inverse_alpha, scale = map->scale, shift = map->shift;
-    const double half = map->half_angle ? 1.0 : 0.0;
+    const double half = map->half_angle ? 1.0 : 0.0, from = map->from;
+    if (map->root) {
+        for (size_t i = 0; i < count; i++) {
+            const double above = cosine[i] - from;
+            x[i] = scale * sqrt(above > 0.0 ? above : 0.0) + shift;
+        }
+        return;
+    }
     for (size_t i = 0; i < count; i++) {
         const double sine2 = (1.0 - cosine[i]) * (1.0 + cosine[i]);
         const double t = 2.0 * cosine[i] / (1.0 + sqrt(sine2));

@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "precompute/nodes.h"
 
+#include "microfacet/gauss.h"
 #include "microfacet/ndf.h"
 
 #include <math.h>
@@ -22,18 +23,21 @@ double lq_inverse_area(double area) {
 }
 
 static double map_forward(const lq_cosine_map *map, double mu) {
+    if (map->root) return map->scale * sqrt(fmax(mu - map->from, 0.0)) + map->shift;
     const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
     return map->scale * asinh(t * map->inverse_alpha) + map->shift;
 }
 
 static double map_inverse(const lq_cosine_map *map, double x) {
+    const double root = (x - map->shift) / map->scale;
+    if (map->root) return fmin(map->from + root * root, 1.0);
     const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
     return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
 }
 
 /* The map of one element: the whole axis, stretched so that the element is [-1, 1]. */
 static lq_cosine_map map_of(double alpha, lq_sense sense, double from, double to) {
-    lq_cosine_map map = {1.0 / alpha, 1.0, 0.0, sense == LQ_RISING};
+    lq_cosine_map map = {.inverse_alpha = 1.0 / alpha, .scale = 1.0, .half_angle = sense == LQ_RISING};
     const double x0 = map_forward(&map, from), x1 = map_forward(&map, to);
     map.scale = 2.0 / (x1 - x0);
     map.shift = -(x0 + x1) / (x1 - x0);
@@ -44,22 +48,39 @@ static double chebyshev_angle(int nodes, int i) {
     return pi * (nodes - 1 - i + 0.5) / nodes;
 }
 
-bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split) {
-    *axis = (lq_node_axis){.count = count, .elements = split > 0.0 && split < 1.0 ? 2 : 1};
-    const int n = axis->nodes = count / axis->elements;
-    axis->bound[1] = split;
-    axis->bound[axis->elements] = 1.0;
+/* The elements have their maps: Chebyshev points of each, and their basis. */
+static bool place_nodes(lq_node_axis *axis) {
+    const int n = axis->nodes;
     axis->basis = lq_zeros((size_t)n * (size_t)n);
     if (!axis->basis) return false;
     for (int m = 0; m < n; m++)
         for (int i = 0; i < n; i++)
             axis->basis[m * n + i] = (m ? 2.0 : 1.0) / n * cos(m * chebyshev_angle(n, i));
-    for (int e = 0; e < axis->elements; e++) {
-        axis->map[e] = map_of(alpha, sense, axis->bound[e], axis->bound[e + 1]);
+    for (int e = 0; e < axis->elements; e++)
         for (int i = 0; i < n; i++)
             axis->mu[e * n + i] = map_inverse(&axis->map[e], cos(chebyshev_angle(n, i)));
-    }
     return true;
+}
+
+bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split) {
+    *axis = (lq_node_axis){.count = count, .elements = split > 0.0 && split < 1.0 ? 2 : 1};
+    axis->nodes = count / axis->elements;
+    axis->bound[1] = split;
+    axis->bound[axis->elements] = 1.0;
+    for (int e = 0; e < axis->elements; e++)
+        axis->map[e] = map_of(alpha, sense, axis->bound[e], axis->bound[e + 1]);
+    return place_nodes(axis);
+}
+
+bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes) {
+    *axis = (lq_node_axis){.count = (cut_count + 1) * nodes, .elements = cut_count + 1, .nodes = nodes};
+    for (int e = 0; e < cut_count; e++) axis->bound[e + 1] = cuts[e];
+    axis->bound[cut_count + 1] = 1.0;
+    for (int e = 0; e <= cut_count; e++) {
+        const double from = axis->bound[e], width = axis->bound[e + 1] - from;
+        axis->map[e] = (lq_cosine_map){.root = 1, .from = from, .scale = 2.0 / sqrt(width), .shift = -1.0};
+    }
+    return place_nodes(axis);
 }
 
 void lq_node_axis_free(lq_node_axis *axis) {
@@ -68,7 +89,9 @@ void lq_node_axis_free(lq_node_axis *axis) {
 }
 
 static int element_of(const lq_node_axis *axis, double mu) {
-    return axis->elements == 2 && mu > axis->bound[1];
+    int e = 0;
+    while (e + 1 < axis->elements && mu > axis->bound[e + 1]) e++;
+    return e;
 }
 
 double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
@@ -104,4 +127,22 @@ void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights) 
     const double angle = acos(fmax(fmin(map_forward(&axis->map[e], mu), 1.0), -1.0));
     for (int m = 0; m < axis->nodes; m++) moments[e * axis->nodes + m] = cos(m * angle);
     lq_node_axis_project(axis, moments, weights);
+}
+
+void lq_node_axis_cosine_mean(const lq_node_axis *axis, double *weights) {
+    double moments[LQ_NODES_MAX] = {0.0}, total = 0.0;
+    lq_gauss rule;
+    lq_gauss_make(&rule, LQ_GAUSS_MAX);
+    for (int e = 0; e < axis->elements; e++) {
+        const double from = axis->bound[e], width = axis->bound[e + 1] - from;
+        double mu[LQ_GAUSS_MAX], weight[LQ_GAUSS_MAX];
+        for (int i = 0; i < rule.count; i++) {
+            const double x = rule.node[i]; /* mu = from + width x^2 */
+            mu[i] = from + width * x * x;
+            weight[i] = 4.0 * mu[i] * width * x * rule.weight[i];
+        }
+        total += lq_node_axis_moments(axis, lq_solver_kernels_get(), (size_t)rule.count, mu, weight, moments);
+    }
+    lq_node_axis_project(axis, moments, weights);
+    for (int i = 0; i < axis->count; i++) weights[i] /= total;
 }

@@ -4,7 +4,8 @@
  * energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take twice the tangent
  * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
  * An axis can be divided at a cosine where the energy changes abruptly (a critical angle); each element has
- * its own points.
+ * its own points. The axis of a medium between interfaces has no roughness of its own: its elements run in the
+ * root of the distance to their lower end, where refraction and roughness of any scale change fastest.
  */
 #ifndef LACQUER_PRECOMPUTE_NODES_H
 #define LACQUER_PRECOMPUTE_NODES_H
@@ -15,11 +16,11 @@
 
 typedef enum lq_sense { LQ_FALLING, LQ_RISING } lq_sense;
 
-enum { LQ_ELEMENTS_MAX = 2 };
+enum { LQ_ELEMENTS_MAX = 12 };
 
 typedef struct lq_node_axis {
     int count;                         /* of all nodes */
-    int elements;                      /* 1 or 2 */
+    int elements;                      /* at least 1 */
     int nodes;                         /* of one element */
     double bound[LQ_ELEMENTS_MAX + 1]; /* cosines */
     lq_cosine_map map[LQ_ELEMENTS_MAX];
@@ -30,6 +31,10 @@ typedef struct lq_node_axis {
 /* `count` nodes (even where divided, at most LQ_NODES_MAX); `split` in (0,1), or 0 for one element. False
  * without memory; free it in either case. */
 bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split);
+
+/* An axis divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes` an element,
+ * LQ_NODES_MAX in all. False without memory; free it in either case. */
+bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes);
 
 void lq_node_axis_free(lq_node_axis *axis);
 
@@ -43,6 +48,9 @@ void lq_node_axis_project(const lq_node_axis *axis, const double *moments, doubl
 
 /* Interpolation weights at one cosine. */
 void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights);
+
+/* Weights of the mean over cosine-weighted directions, 2 mu dmu, of an axis in roots; they add up to 1. */
+void lq_node_axis_cosine_mean(const lq_node_axis *axis, double *weights);
 
 /* 1 / area, or 0 where an NDF that falls like exp(-slope^2) shows a rising ray no facet at all: it has no
  * next hit (its Lambda is 0 too) and needs no row. */

@@ -114,6 +114,7 @@ extern const cli_verb cli_verb_pack;
 extern const cli_verb cli_verb_info;
 extern const cli_verb cli_verb_fit;
 extern const cli_verb cli_verb_bench;
+extern const cli_verb cli_verb_stack;
 
 /* All verbs in the order help shows them; NULL beyond the last. */
 const cli_verb *cli_verb_at(size_t i);

@@ -185,7 +185,7 @@ static void finer_tolerances_are_reached(void **state) {
 static void kernel_copies_agree(void **state) {
     (void)state;
     const lq_solver_kernels *base = lq_precompute_kernels_base(), *widest = lq_solver_kernels_get();
-    const lq_cosine_map map = {2.0, 1.3, -0.9, 1};
+    const lq_cosine_map map = {.inverse_alpha = 2.0, .scale = 1.3, .shift = -0.9, .half_angle = 1};
     double cosine[40], weight[40], a[24] = {0.0}, b[24] = {0.0};
     for (int i = 0; i < 40; i++) {
         cosine[i] = (i + 0.5) / 40;

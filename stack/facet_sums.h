@@ -1,0 +1,46 @@
+/* facet_sums.h - where the facets that one direction sees send light, in all modes: moments on cosine axes. */
+#ifndef LACQUER_STACK_FACET_SUMS_H
+#define LACQUER_STACK_FACET_SUMS_H
+
+#include "microfacet/facets.h"
+#include "precompute/nodes.h"
+#include "stack/modes.h"
+
+/* Parts of the light, by where they go after the hit. With `leaving` set the first two are taken out, masking at
+ * each facet (what passes to the other side is not masked yet, and counted among what crosses, too); RISES is
+ * then what stays. */
+typedef enum lq_facet_part {
+    LQ_PART_ESCAPES, /* reflected, leaves at once: on the axis leaving[0] */
+    LQ_PART_PASSES,  /* refracted and rising in the other medium: on leaving[1] */
+    LQ_PART_RISES,   /* reflected, away from the surface; from here on: on `nodes` */
+    LQ_PART_FALLS,
+    LQ_PART_CROSSES,
+    LQ_PART_CROSSES_FALLING,
+    LQ_PARTS
+} lq_facet_part;
+
+typedef struct lq_facet_sums {
+    const lq_ndf *ndf;
+    double alpha;
+    double eta;              /* of the dielectric; 0: conductors, which let nothing through */
+    int materials;           /* conductors; 1 dielectric */
+    const double *n, *kappa; /* of each conductor */
+    double v_z;              /* height of the direction light comes from */
+    const lq_facet_rule *rule;
+    const lq_panels *kinks;
+    const lq_node_axis *nodes;
+    const lq_node_axis *leaving[2]; /* own side, other side; NULL: nothing is taken out */
+    /* Results and work. */
+    double sine, area, total;
+    double *moments; /* [(part * variants + material * LQ_MODES + mode) * LQ_NODES_MAX + m] */
+} lq_facet_sums;
+
+/* LQ_NO_MEMORY; free it on LQ_OK. */
+lq_status lq_facet_sums_make(lq_facet_sums *sums, lq_error *error);
+void lq_facet_sums_free(lq_facet_sums *sums);
+
+/* Weights on the nodes of the part's axis, variant = material * LQ_MODES + mode; those of all light that a
+ * lossless surface turns add up to 1 in mode 0. */
+void lq_facet_sums_project(const lq_facet_sums *sums, int part, size_t variant, double *weights);
+
+#endif

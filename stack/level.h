@@ -1,0 +1,12 @@
+/* level.h - a planned stack solved at one level of resolution. */
+#ifndef LACQUER_STACK_LEVEL_H
+#define LACQUER_STACK_LEVEL_H
+
+#include "stack/plan.h"
+
+/* What is asked of every channel: light as in lq_stack_solve, its errors left alone. LQ_NOT_CONVERGED: this level
+ * is too fine for some interface. */
+lq_status lq_stack_level(const lq_plan *plan, const lq_stack_query *query, int level, lq_stack_light *light,
+                         const lq_progress *progress, lq_error *error);
+
+#endif

@@ -1,0 +1,253 @@
+/* plan.c - which surfaces, axes and NDFs a stack has, each once. */
+#include "stack/plan.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stack/description.h"
+#include "system/status.h"
+
+/* ======================================================================================
+ *                                     What is refused
+ * ====================================================================================== */
+
+static const char *unsolved(const lq_layer *layer) {
+    for (int i = 0; i < LQ_PARAMETERS; i++)
+        if ((lq_parameters[i].layers >> layer->type & 1) &&
+            ((const lq_quantity *)(const void *)((const char *)layer + lq_parameters[i].offset))->form == LQ_RANGE)
+            return "has a range; accepted: a number or [r, g, b]";
+    if (layer->anisotropic) return "is anisotropic; accepted: one alpha";
+    if (layer->type == LQ_LAYER_DIELECTRIC && lq_medium_scatters(&layer->medium))
+        return "has a medium that scatters; accepted: tau, or sigma_s = 0";
+    return NULL;
+}
+
+static lq_status check(const lq_stack *stack, bool from_below, lq_error *error) {
+    for (size_t i = 0; i < stack->layer_count; i++) {
+        const char *why = unsolved(&stack->layers[i]);
+        if (why) return lq_fail(error, LQ_BAD_INPUT, "layer %zu %s", i + 1, why);
+    }
+    const lq_layer_type last = stack->layers[stack->layer_count - 1].type;
+    if (from_below && last != LQ_LAYER_DIELECTRIC)
+        return lq_fail(error, LQ_BAD_INPUT, "light from below a %s base; accepted: a stack that ends with a "
+                                            "dielectric", lq_layer_type_name(last));
+    return LQ_OK;
+}
+
+int lq_stack_channels(const lq_stack *stack) {
+    for (size_t i = 0; i < stack->layer_count; i++)
+        for (int p = 0; p < LQ_PARAMETERS; p++)
+            if ((lq_parameters[p].layers >> stack->layers[i].type & 1) &&
+                lq_parameter_of(&stack->layers[i], &lq_parameters[p])->form == LQ_RGB)
+                return LQ_STACK_CHANNELS;
+    return 1;
+}
+
+/* ======================================================================================
+ *                                       One of each
+ * ====================================================================================== */
+
+static lq_status open_ndf(lq_plan *plan, const char *text, double alpha, const lq_ndf **ndf, lq_error *error) {
+    const lq_ndf *opened = NULL;
+    *ndf = NULL;
+    lq_status status = lq_ndf_open(&opened, text, error);
+    if (status != LQ_OK) return status;
+    for (size_t i = 0; i < plan->ndf_count && !*ndf; i++)
+        if (strcmp(lq_ndf_text(plan->ndf[i]), lq_ndf_text(opened)) == 0) *ndf = plan->ndf[i];
+    if (*ndf) lq_ndf_close(opened);
+    else *ndf = plan->ndf[plan->ndf_count++] = opened;
+    return alpha > 0.0 ? lq_ndf_prepare(*ndf, alpha, error) : LQ_OK;
+}
+
+static size_t find_axis(lq_plan *plan, const lq_plan_axis *axis) {
+    for (size_t i = 0; i < plan->axis_count; i++)
+        if (memcmp(&plan->axis[i], axis, sizeof *axis) == 0) return i;
+    plan->axis[plan->axis_count] = *axis;
+    return plan->axis_count++;
+}
+
+static bool alike(const lq_plan_surface *a, const lq_plan_surface *b) {
+    return a->spec.ndf == b->spec.ndf && a->spec.alpha == b->spec.alpha && a->spec.opaque == b->spec.opaque &&
+           a->spec.diffuse == b->spec.diffuse && a->axis[0] == b->axis[0] && a->axis[1] == b->axis[1];
+}
+
+/* The material of a base among those its surface has. */
+static int find_material(lq_surface *all, const lq_surface *one) {
+    int m = 0;
+    for (; m < all->materials; m++)
+        if (all->n[m] == one->n[0] && all->kappa[m] == one->kappa[0] && all->rho[m] == one->rho[0]) return m;
+    all->n[m] = one->n[0];
+    all->kappa[m] = one->kappa[0];
+    all->rho[m] = one->rho[0];
+    all->materials++;
+    return m;
+}
+
+static lq_plan_step find_surface(lq_plan *plan, const lq_plan_surface *surface) {
+    size_t i = 0;
+    while (i < plan->surface_count && !alike(&plan->surface[i], surface)) i++;
+    if (i == plan->surface_count) plan->surface[plan->surface_count++] = *surface;
+    lq_plan_step step = {.surface = i};
+    if (surface->spec.opaque) step.material = find_material(&plan->surface[i].spec, &surface->spec);
+    return step;
+}
+
+/* ======================================================================================
+ *                                        Media
+ * ====================================================================================== */
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Cuts closer than this to each other or to an end of the axis are one. */
+static const double CUTS_APART = 1e-6;
+
+/* The axis of a medium of index n among those of indices `all`, ascending: cut where light is totally reflected
+ * towards each rarer one. */
+static lq_plan_axis axis_of(double n, const double *all, size_t count) {
+    lq_plan_axis axis;
+    memset(&axis, 0, sizeof axis); /* compared as bytes */
+    axis.n = n;
+    for (size_t i = count; i-- > 0;) { /* the nearest index first: ascending cosines */
+        const double ratio = all[i] / n, cosine = ratio < 1.0 ? sqrt((1.0 - ratio) * (1.0 + ratio)) : 0.0;
+        const double before = axis.cut_count ? axis.cut[axis.cut_count - 1] : 0.0;
+        if (cosine > before + CUTS_APART && cosine < 1.0 - CUTS_APART && axis.cut_count + 1 < LQ_ELEMENTS_MAX)
+            axis.cut[axis.cut_count++] = cosine;
+    }
+    return axis;
+}
+
+static double value_of(const lq_quantity *q, int channel) {
+    return q->value[channel];
+}
+
+/* Indices of the media from the top, [interfaces + 1]. */
+static size_t media_of(const lq_stack *stack, int channel, double *n) {
+    size_t count = 1;
+    n[0] = 1.0;
+    for (size_t i = 0; i < stack->layer_count; i++)
+        if (stack->layers[i].type == LQ_LAYER_DIELECTRIC)
+            n[count++] = value_of(&stack->layers[i].n, channel);
+    return count;
+}
+
+/* ======================================================================================
+ *                                        Chains
+ * ====================================================================================== */
+
+static lq_status add_step(lq_plan *plan, lq_plan_chain *chain, const lq_layer *layer, int channel,
+                          lq_scattering scattering, lq_error *error) {
+    const size_t i = chain->steps, above = chain->medium[i].axis, below = chain->medium[i + 1].axis;
+    const double n_above = plan->axis[above].n;
+    lq_plan_surface surface = {.spec = {.scattering = scattering, .materials = 1}, .axis = {above, above}};
+    lq_surface *s = &surface.spec;
+    s->alpha = layer->type == LQ_LAYER_LAMBERTIAN ? 0.0 : value_of(&layer->alpha_x, channel);
+    bool flipped = false;
+    if (layer->type == LQ_LAYER_DIELECTRIC) {
+        flipped = above > below;
+        surface.axis[0] = flipped ? below : above;
+        surface.axis[1] = flipped ? above : below;
+        s->eta = plan->axis[surface.axis[1]].n / plan->axis[surface.axis[0]].n;
+    } else {
+        s->opaque = true;
+        s->diffuse = layer->type == LQ_LAYER_LAMBERTIAN;
+        s->n[0] = s->diffuse ? 0.0 : value_of(&layer->n, channel) / n_above;
+        s->kappa[0] = s->diffuse ? 0.0 : value_of(&layer->kappa, channel) / n_above;
+        s->rho[0] = s->diffuse ? value_of(&layer->rho, channel) : 0.0;
+    }
+    if (!s->diffuse) {
+        const lq_status status = open_ndf(plan, layer->ndf, s->alpha, &s->ndf, error);
+        if (status != LQ_OK) return status;
+    }
+    chain->step[i] = find_surface(plan, &surface);
+    chain->step[i].flipped = flipped;
+    chain->steps++;
+    return LQ_OK;
+}
+
+static void reverse(lq_plan_chain *chain) {
+    for (size_t i = 0, j = chain->steps - 1; i < j; i++, j--) {
+        const lq_plan_step step = chain->step[i];
+        chain->step[i] = chain->step[j];
+        chain->step[j] = step;
+    }
+    for (size_t i = 0, j = chain->steps; i < j; i++, j--) {
+        const lq_plan_medium medium = chain->medium[i];
+        chain->medium[i] = chain->medium[j];
+        chain->medium[j] = medium;
+    }
+    for (size_t i = 0; i < chain->steps; i++) chain->step[i].flipped = !chain->step[i].flipped;
+}
+
+/* Which sides of its surfaces light arrives on. */
+static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
+    for (size_t i = 0; i < chain->steps; i++) {
+        lq_plan_surface *s = &plan->surface[chain->step[i].surface];
+        const int front = chain->step[i].flipped ? 1 : 0;
+        if (i == 0) s->asked[front] = true;
+        else s->inside[front] = true;
+        if (i + 1 < chain->steps) s->inside[1 - front] = true;
+    }
+}
+
+static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, bool from_below,
+                            lq_scattering scattering, lq_error *error) {
+    lq_plan_chain *chain = &plan->chain[channel];
+    const size_t layers = stack->layer_count;
+    double *n = malloc(2 * (layers + 1) * sizeof *n);
+    chain->step = calloc(layers, sizeof *chain->step);
+    chain->medium = calloc(layers + 1, sizeof *chain->medium);
+    lq_status status = LQ_OK;
+    if (!n || !chain->step || !chain->medium) {
+        free(n);
+        return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", layers);
+    }
+    const size_t media = media_of(stack, channel, n);
+    double *sorted = memcpy(n + layers + 1, n, media * sizeof *n);
+    qsort(sorted, media, sizeof *sorted, ascending);
+    for (size_t i = 0; i < media; i++) {
+        const lq_plan_axis axis = axis_of(n[i], sorted, media);
+        chain->medium[i].axis = find_axis(plan, &axis);
+        chain->medium[i].tau =
+            i == 0 ? 1.0 : lq_medium_transmittance(&stack->layers[i - 1].medium, channel);
+    }
+    for (size_t i = 0; i < layers && status == LQ_OK; i++)
+        status = add_step(plan, chain, &stack->layers[i], channel, scattering, error);
+    chain->opaque = stack->layers[layers - 1].type != LQ_LAYER_DIELECTRIC;
+    free(n);
+    if (status != LQ_OK) return status;
+    if (from_below) reverse(chain);
+    mark_sides(plan, chain);
+    return LQ_OK;
+}
+
+lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
+                       lq_error *error) {
+    *plan = (lq_plan){.channels = lq_stack_channels(stack)};
+    lq_status status = check(stack, from_below, error);
+    if (status != LQ_OK) return status;
+    const size_t most = (stack->layer_count + 1) * (size_t)plan->channels;
+    plan->surface = calloc(most, sizeof *plan->surface);
+    plan->axis = calloc(most, sizeof *plan->axis);
+    plan->ndf = calloc(most, sizeof *plan->ndf);
+    if (!plan->surface || !plan->axis || !plan->ndf)
+        status = lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", stack->layer_count);
+    for (int c = 0; c < plan->channels && status == LQ_OK; c++)
+        status = make_chain(plan, stack, c, from_below, scattering, error);
+    if (status != LQ_OK) lq_plan_free(plan);
+    return status;
+}
+
+void lq_plan_free(lq_plan *plan) {
+    for (int c = 0; c < plan->channels; c++) {
+        free(plan->chain[c].step);
+        free(plan->chain[c].medium);
+    }
+    for (size_t i = 0; i < plan->ndf_count; i++) lq_ndf_close(plan->ndf[i]);
+    free(plan->surface);
+    free(plan->axis);
+    free(plan->ndf);
+}
