@@ -5,10 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Node cosines, depths, quadrature nodes per panel of d and per piece of azimuth. */
-typedef struct resolution {
-    int nodes, depths, outer, inner;
-} resolution;
+typedef lq_resolution resolution;
 
 /* No two levels share a resolution that could be what limits both. */
 static const resolution regular[LQ_DIELECTRIC_LEVELS] = {{12, 12, 8, 8},   {20, 16, 10, 12}, {24, 20, 12, 16},
@@ -25,7 +22,7 @@ static const resolution matched[LQ_DIELECTRIC_LEVELS] = {
 static const int leaving_nodes[LQ_DIELECTRIC_LEVELS][2] = {{16, 20}, {18, 24}, {20, 28}, {24, 36},
                                                            {32, 40}, {48, 48}, {64, 64}};
 
-static void level_free(lq_rough_level *r) {
+void lq_rough_level_free(lq_rough_level *r) {
     if (!r) return;
     lq_node_axis_free(&r->axis);
     for (int i = 0; i < 2; i++) lq_node_axis_free(&r->leaving[i].axis);
@@ -99,8 +96,9 @@ static bool leaving_make(lq_leaving *l, const lq_ndf *ndf, double alpha, int cou
     return true;
 }
 
-static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, int level, int band) {
-    const resolution *l = band >= NEARLY_MATCHED ? &matched[level] : &regular[level];
+/* `scale`: the cosine below which the nodes are dense. */
+static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale, const resolution *l,
+                                  double split) {
     const size_t n = (size_t)l->nodes, d = (size_t)l->depths;
     lq_rough_level *r = calloc(1, sizeof *r);
     if (!r) return NULL;
@@ -110,11 +108,9 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, int level, in
     r->travel_up = lq_zeros(n * d * d);
     r->survival = lq_zeros(n * d);
     r->refracted_hits = lq_zeros(ARRIVALS * d * n);
-    const bool axis = lq_node_axis_make(&r->axis, ldexp(alpha, -band), LQ_RISING, l->nodes, 0.0);
-    const bool leaves = leaving_make(&r->leaving[0], ndf, alpha, leaving_nodes[level][0]) &&
-                        leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1]);
-    if (!axis || !leaves || !r->travel_down || !r->travel_up || !r->survival || !r->refracted_hits) {
-        level_free(r);
+    const bool axis = lq_node_axis_make(&r->axis, scale, LQ_RISING, l->nodes, split);
+    if (!axis || !r->travel_down || !r->travel_up || !r->survival || !r->refracted_hits) {
+        lq_rough_level_free(r);
         return NULL;
     }
     for (int i = 0; i < l->nodes; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
@@ -124,13 +120,23 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, int level, in
     return r;
 }
 
+static lq_rough_level *level_with_leaving(const lq_ndf *ndf, double alpha, int level, int band) {
+    const resolution *l = band >= NEARLY_MATCHED ? &matched[level] : &regular[level];
+    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, 0.0);
+    if (r && leaving_make(&r->leaving[0], ndf, alpha, leaving_nodes[level][0]) &&
+        leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1]))
+        return r;
+    lq_rough_level_free(r);
+    return NULL;
+}
+
 lq_rough lq_rough_start(const lq_ndf *ndf, double alpha) {
     return (lq_rough){.ndf = ndf, .alpha = alpha};
 }
 
 void lq_rough_free(lq_rough *rough) {
     for (int band = 0; band < LQ_DIELECTRIC_BANDS; band++)
-        for (int l = 0; l < LQ_DIELECTRIC_LEVELS; l++) level_free(rough->levels[band][l]);
+        for (int l = 0; l < LQ_DIELECTRIC_LEVELS; l++) lq_rough_level_free(rough->levels[band][l]);
 }
 
 /* How many facets, within a factor, light at the critical cosine meets on its way across. */
@@ -173,6 +179,11 @@ double lq_dielectric_regular_from(const lq_rough *rough) {
 const lq_rough_level *lq_rough_level_get(lq_rough *rough, double eta, int level) {
     const int band = band_of(rough->alpha, eta);
     lq_rough_level **r = &rough->levels[band][level];
-    if (!*r) *r = level_make(rough->ndf, rough->alpha, level, band);
+    if (!*r) *r = level_with_leaving(rough->ndf, rough->alpha, level, band);
     return *r;
+}
+
+lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *l,
+                                    double split) {
+    return level_make(ndf, alpha, ldexp(alpha, -band_of(alpha, eta)), l, split);
 }

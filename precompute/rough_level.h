@@ -33,6 +33,17 @@ struct lq_rough_level {
 /* lq_refracted_hits of light that arrives with `lambda` at all rising nodes: hits[at * nodes + j]. */
 void lq_rough_level_refracted(const lq_rough_level *level, double lambda, double *hits);
 
+/* Node cosines (a multiple of 8), depths (of 4), quadrature nodes per panel of d and per piece of azimuth. */
+typedef struct lq_resolution {
+    int nodes, depths, outer, inner;
+} lq_resolution;
+
+/* A level of one's own, for an interface of relative index eta either way; its axis is divided at `split` in (0,1),
+ * 0: not at all. It has no leaving nodes. NULL without memory. */
+lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *resolution,
+                                    double split);
+void lq_rough_level_free(lq_rough_level *level); /* NULL: nothing */
+
 /* Made when first asked for, and kept in `rough`; NULL without memory. */
 const lq_rough_level *lq_rough_level_get(lq_rough *rough, double eta, int level);
 

@@ -11,7 +11,7 @@
 #include "system/status.h"
 
 /* Nodes of each element of a medium's axis. */
-static const int axis_nodes[LQ_SURFACE_LEVELS] = {12, 16, 20, 28, 36, 48, 64};
+static const int axis_nodes[LQ_SURFACE_LEVELS] = {16, 16, 20, 28, 36, 48};
 
 typedef struct solving {
     const lq_plan *plan;

@@ -20,6 +20,38 @@ static double difference(const lq_stack_lobe *a, const lq_stack_lobe *b) {
     return fmax(fmax(energy, sin2), fmax(fabs(a->mean - b->mean), fabs(a->across - b->across)));
 }
 
+/* Every level is at least 2.5 times as good as the one before, so that twice of what has changed covers what is
+ * left. An estimate is never below a tenth of the tolerance: two levels can agree by accident. */
+static const double CAUTION = 2.0, LEAST = 0.1;
+
+static double estimate_of(const lq_stack_light *now, const lq_stack_light *before, double tolerance) {
+    const double change = fmax(difference(&now->reflected, &before->reflected),
+                               difference(&now->transmitted, &before->transmitted));
+    return fmax(CAUTION * change, LEAST * tolerance);
+}
+
+/* Raise the level until all estimates hold; a level that does not settle is left out. `now` has room for `count`
+ * lights. */
+static lq_status refine(const lq_plan *plan, const lq_stack_query *query, double tolerance,
+                        lq_stack_light *light, lq_stack_light *now, size_t count, const lq_progress *progress,
+                        lq_error *error) {
+    double worst = INFINITY;
+    lq_status status = LQ_OK;
+    for (int level = 0; level < LQ_SURFACE_LEVELS && worst > tolerance && status == LQ_OK; level++) {
+        status = lq_stack_level(plan, query, level, now, progress, error);
+        worst = 0.0;
+        for (size_t i = 0; i < count && status == LQ_OK; i++) {
+            now[i].error = level > 0 ? estimate_of(&now[i], &light[i], tolerance) : 1.0;
+            worst = fmax(worst, now[i].error);
+            light[i] = now[i];
+        }
+    }
+    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return status;
+    for (size_t i = 0; i < count; i++) worst = fmax(worst, light[i].error);
+    if (worst <= tolerance) return LQ_OK;
+    return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g", worst, tolerance);
+}
+
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error) {
     const double tolerance = query->tolerance > 0.0 ? query->tolerance : DEFAULT_TOLERANCE;
@@ -28,19 +60,11 @@ lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_
     if (status != LQ_OK) return status;
     status = lq_plan_make(&plan, stack, query->from_below, query->interfaces, error);
     if (status != LQ_OK) return status;
-    const size_t paths = query->paths ? query->paths : 1;
-    const size_t count = query->mu_count * (size_t)plan.channels * paths;
+    const size_t count = query->mu_count * (size_t)plan.channels * (query->paths ? query->paths : 1);
     lq_stack_light *now = malloc((count + 1) * sizeof *now);
-    const char *lv = getenv("LEVEL");
-    int a = lv ? atoi(lv) : 1;
-    (void)tolerance;
-    status = lq_stack_level(&plan, query, a, light, progress, error);
-    if (status == LQ_OK) status = lq_stack_level(&plan, query, a + 1, now, progress, error);
-    for (size_t i = 0; i < count && status == LQ_OK; i++) {
-        now[i].error = fmax(difference(&now[i].reflected, &light[i].reflected),
-                            difference(&now[i].transmitted, &light[i].transmitted));
-        light[i] = now[i];
-    }
+    for (size_t i = 0; i < count; i++) light[i] = (lq_stack_light){.error = 1.0};
+    status = now ? refine(&plan, query, tolerance, light, now, count, progress, error)
+                 : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", query->mu_count);
     free(now);
     lq_plan_free(&plan);
     return status;
