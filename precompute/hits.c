@@ -68,6 +68,11 @@ static void meet(const lq_hits *f, const lq_hits_values *x) {
     }
 }
 
+/* What a hit is worth besides what meets the next one. */
+static void add_source(const lq_hits *f, const lq_hits_values *x, lq_v8 *before) {
+    for (size_t q = 0; x->source && q < 2 * half_size(f); q++) before[q] += x->source[q];
+}
+
 static bool is_energy(const lq_hits *f, const lq_hits_values *x) {
     for (size_t q = 0; q < half_size(f); q++)
         if (!(fabs(x->value[0][q][0]) < 10.0 && fabs(x->value[1][q][0]) < 10.0)) return false; /* NaN too */
@@ -80,6 +85,7 @@ static bool solve_by_passes(const lq_hits *f, lq_hits_values *x, double settled)
         const double before = change;
         change = travel(f, x);
         meet(f, x);
+        add_source(f, x, x->before[0]);
         /* The changes fall like a geometric series: what all the later ones would add. */
         left = change < before ? change * fmax(change / (before - change), 1.0) : 1.0;
     }
@@ -115,6 +121,7 @@ static bool solve_by_krylov(const lq_hits *f, lq_hits_values *x) {
     lq_hits_values first = *x;
     for (int s = 0; s < 2; s++) first.before[s] = right + (size_t)s * size;
     meet(f, &first);
+    add_source(f, x, right);
     const double left = lq_krylov_solve(pass_unpaid, &p, 2 * size, right, x->before[0], PRODUCTS, RESIDUAL);
     travel(f, x);
     free(right);
@@ -123,5 +130,6 @@ static bool solve_by_krylov(const lq_hits *f, lq_hits_values *x) {
 
 bool lq_hits_solve(const lq_hits *f, lq_hits_values *x, double settled) {
     memset(x->before[0], 0, 2 * half_size(f) * sizeof(lq_v8));
+    add_source(f, x, x->before[0]);
     return solve_by_passes(f, x, settled) || solve_by_krylov(f, x);
 }

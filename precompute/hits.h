@@ -22,6 +22,7 @@ typedef struct lq_hits {
 /* One batch of rewards, a lane each. */
 typedef struct lq_hits_values {
     lq_v8 *reward;    /* [side * nodes + j], of the rising nodes */
+    lq_v8 *source;    /* NULL, or like `before`: what is added to C at every hit */
     lq_v8 *value[2];  /* E: [depth * 2 nodes + (rising, falling)] */
     lq_v8 *before[2]; /* C: likewise, one side after the other */
 } lq_hits_values;

@@ -83,10 +83,8 @@ static void add_reflection(void *user, const lq_fan *fan) {
     f->total += weight_of(fan) * (f->eta > 0.0 ? factor[0] : 1.0);
     images rises, escapes;
     images_make(&rises, f, fan, 0, fan->up, 1.0);
-    if (f->leaving[0]) {
-        divide(f, &rises, &escapes);
-        add(f, LQ_PART_ESCAPES, f->leaving[0], &escapes, factor);
-    }
+    if (f->masked) divide(f, &rises, &escapes);
+    add(f, LQ_PART_ESCAPES, f->leaving[0], f->masked ? &escapes : &rises, factor);
     add(f, LQ_PART_RISES, f->nodes, &rises, factor);
     images_make(&rises, f, fan, fan->up, fan->count, 1.0);
     add(f, LQ_PART_FALLS, f->nodes, &rises, factor);
@@ -98,7 +96,7 @@ static void add_refraction(void *user, const lq_fan *fan) {
     f->total += weight_of(fan) * passes;
     images i;
     images_make(&i, f, fan, 0, fan->up, -1.0);
-    if (f->leaving[1]) add(f, LQ_PART_PASSES, f->leaving[1], &i, &passes);
+    add(f, LQ_PART_PASSES, f->leaving[1], &i, &passes);
     add(f, LQ_PART_CROSSES, f->nodes, &i, &passes);
     images_make(&i, f, fan, fan->up, fan->count, -1.0);
     add(f, LQ_PART_CROSSES_FALLING, f->nodes, &i, &passes);
@@ -111,7 +109,7 @@ lq_status lq_facet_sums_make(lq_facet_sums *f, lq_error *error) {
     f->moments = lq_zeros(LQ_PARTS * variants(f) * LQ_NODES_MAX);
     if (!f->moments) return lq_fail(error, LQ_NO_MEMORY, "no memory for a row of an interface");
     f->sine = fmax(lq_sine(fabs(f->v_z)), SINE_MIN);
-    f->area = f->leaving[0] ? lq_area_above(f->ndf, f->alpha, f->v_z, f->sine) : 0.0;
+    f->area = f->masked ? lq_area_above(f->ndf, f->alpha, f->v_z, f->sine) : 0.0;
     f->total = 0.0;
     lq_facets_visit(f->ndf, f->alpha, f->v_z, f->sine, f->rule, f->kinks, add_reflection, f);
     if (f->eta > 0.0)

@@ -6,13 +6,12 @@
 #include "precompute/nodes.h"
 #include "stack/modes.h"
 
-/* Parts of the light, by where they go after the hit. With `leaving` set the first two are taken out, masking at
- * each facet (what passes to the other side is not masked yet, and counted among what crosses, too); RISES is
- * then what stays. */
+/* Parts of the light, by where they go after the hit. What rises on either side is summed twice: on the axis of
+ * the medium, for what leaves, and on the nodes of the level, for what hits again. */
 typedef enum lq_facet_part {
-    LQ_PART_ESCAPES, /* reflected, leaves at once: on the axis leaving[0] */
-    LQ_PART_PASSES,  /* refracted and rising in the other medium: on leaving[1] */
-    LQ_PART_RISES,   /* reflected, away from the surface; from here on: on `nodes` */
+    LQ_PART_ESCAPES, /* reflected, away from the surface: on the axis leaving[0] */
+    LQ_PART_PASSES,  /* refracted likewise: on leaving[1] */
+    LQ_PART_RISES,   /* as ESCAPES; from here on: on `nodes` */
     LQ_PART_FALLS,
     LQ_PART_CROSSES,
     LQ_PART_CROSSES_FALLING,
@@ -29,7 +28,8 @@ typedef struct lq_facet_sums {
     const lq_facet_rule *rule;
     const lq_panels *kinks;
     const lq_node_axis *nodes;
-    const lq_node_axis *leaving[2]; /* own side, other side; NULL: nothing is taken out */
+    const lq_node_axis *leaving[2]; /* own side, other side */
+    bool masked; /* light arrives from outside: ESCAPES has the masking of each facet, RISES what it stops */
     /* Results and work. */
     double sine, area, total;
     double *moments; /* [(part * variants + material * LQ_MODES + mode) * LQ_NODES_MAX + m] */

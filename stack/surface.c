@@ -19,17 +19,20 @@
 typedef struct entry_rows {
     double *arrival; /* [depths]: where the first facet is met, and the next */
     double *leaving, *staying, *refracted;
-    double *worth; /* of a reward at each rising node of both sides, once the batches are solved */
+    double *worth; /* of a reward at each node of both axes, once the batches are solved */
 } entry_rows;
 
 struct lq_surface_work {
     lq_surface spec;
     lq_rough_level *level; /* NULL: known in closed form */
     int nodes, depths, sides;
-    size_t columns; /* rewards: rising nodes of all sides */
+    size_t columns; /* rewards: nodes of the axes of both media */
     lq_panels kinks[2];
     double *memory;
     double *fall[2], *rise[2]; /* [(material * LQ_MODES + mode) * nodes + i][4 nodes] */
+    /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling i]
+     * [columns]; and how much of it leaves from depth k, [k * axis + a]. */
+    double *out[2], *survival[2];
     entry_rows entry[2];
 };
 
@@ -64,6 +67,8 @@ static size_t place_arrays(lq_surface_work *w) {
         entry_rows *e = &w->entry[s];
         w->fall[s] = take(w->memory, &at, each * n * 4 * n);
         w->rise[s] = take(w->memory, &at, each * n * 4 * n);
+        w->out[s] = take(w->memory, &at, each * 2 * n * w->columns);
+        w->survival[s] = take(w->memory, &at, depths * axis_count(&w->spec, s));
         e->arrival = take(w->memory, &at, rows * depths);
         e->leaving = take(w->memory, &at, rows * each * leaving_size(w));
         e->staying = take(w->memory, &at, rows * each * 3 * n);
@@ -104,6 +109,17 @@ static double split_of(const lq_surface *s) {
     return s->alpha < 0.3 ? cosine : eta;
 }
 
+static void fill_survival(lq_surface_work *w) {
+    for (int s = 0; s < w->sides; s++) {
+        const lq_node_axis *axis = w->spec.axis[s];
+        for (int a = 0; a < axis->count; a++) {
+            const double lambda = lq_lambda(w->spec.ndf, w->spec.alpha, axis->mu[a]);
+            for (int k = 0; k < w->depths; k++)
+                w->survival[s][k * axis->count + a] = lq_survival(lambda, w->level->depths.u[k]);
+        }
+    }
+}
+
 static bool allocate(lq_surface_work *w, int level) {
     const lq_surface *s = &w->spec;
     w->sides = s->opaque ? 1 : 2;
@@ -113,10 +129,11 @@ static bool allocate(lq_surface_work *w, int level) {
     if (!w->level) return false;
     w->nodes = w->level->axis.count;
     w->depths = w->level->depths.count;
-    w->columns = (size_t)(w->sides * w->nodes);
+    w->columns = leaving_size(w);
     make_kinks(w);
     w->memory = lq_zeros(place_arrays(w));
     if (w->memory) place_arrays(w);
+    if (w->memory) fill_survival(w);
     return w->memory;
 }
 
@@ -154,7 +171,8 @@ static lq_facet_sums sums_of(const lq_surface_work *w, int side, double v_z) {
                            .v_z = v_z,
                            .rule = &w->level->rule,
                            .kinks = &w->kinks[side],
-                           .nodes = &w->level->axis};
+                           .nodes = &w->level->axis,
+                           .leaving = {s->axis[side], s->axis[1 - side]}};
 }
 
 /* The row of one node of the level, rising (v below the horizon) or falling. */
@@ -168,6 +186,9 @@ static lq_status node_row(lq_surface_work *w, int side, bool rising, int node, l
         double *row = (rising ? w->rise[side] : w->fall[side]) + (v * n + (size_t)node) * 4 * n;
         for (int part = 0; part < (w->sides == 2 ? 4 : 2); part++)
             lq_facet_sums_project(&f, LQ_PART_RISES + part, v, row + (size_t)part * n);
+        double *out = w->out[side] + ((v * 2 + (rising ? 0 : 1)) * n + (size_t)node) * w->columns;
+        lq_facet_sums_project(&f, LQ_PART_ESCAPES, v, out);
+        if (w->sides == 2) lq_facet_sums_project(&f, LQ_PART_PASSES, v, out + axis_count(&w->spec, side));
     }
     lq_facet_sums_free(&f);
     return LQ_OK;
@@ -214,7 +235,7 @@ static lq_status entry_row(lq_surface_work *w, int side, size_t row, lq_error *e
     const size_t n = (size_t)w->nodes, own = axis_count(s, side);
     const double mu = fmax(s->entry[side][row], LQ_GRAZING), lambda_i = lq_lambda(s->ndf, s->alpha, mu);
     lq_facet_sums f = sums_of(w, side, mu);
-    for (int i = 0; i < w->sides; i++) f.leaving[i] = s->axis[i == 0 ? side : 1 - side];
+    f.masked = true;
     lq_status status = lq_facet_sums_make(&f, error);
     if (status != LQ_OK) return status;
     lq_arrival(&w->level->depths, lambda_i, w->entry[side].arrival + row * (size_t)w->depths);
@@ -234,7 +255,7 @@ static lq_status entry_row(lq_surface_work *w, int side, size_t row, lq_error *e
 }
 
 static size_t node_rows(const lq_surface_work *w) {
-    return w->level && w->spec.scattering == LQ_MULTIPLE ? 2 * w->columns : 0;
+    return w->level && w->spec.scattering == LQ_MULTIPLE ? (size_t)(2 * w->sides * w->nodes) : 0;
 }
 
 size_t lq_surface_rows(const lq_surface_work *w) {
@@ -296,6 +317,23 @@ static void read_batch(lq_surface_work *w, size_t v, size_t first, const lq_hits
         }
 }
 
+/* What a hit at each depth and node of both sides sends out at once, for the reward of 1 at one node of an axis. */
+static void load_source(const lq_surface_work *w, size_t v, size_t column, size_t lane, lq_v8 *source) {
+    const size_t n = (size_t)w->nodes, depths = (size_t)w->depths, above = axis_count(&w->spec, 0);
+    const int paid = column >= above;
+    const size_t node = paid ? column - above : column, axis = axis_count(&w->spec, paid);
+    for (int s = 0; s < w->sides; s++) {
+        const size_t own = axis_count(&w->spec, s);
+        const double *out = w->out[s] + v * 2 * n * w->columns + (paid == s ? node : own + node);
+        for (size_t k = 0; k < depths; k++) {
+            const size_t depth = paid == s ? k : depths - 1 - k;
+            const double leaves = w->survival[paid][depth * axis + node];
+            lq_v8 *to = source + ((size_t)s * depths + k) * 2 * n;
+            for (size_t q = 0; q < 2 * n; q++) to[q][lane] = leaves * out[q * w->columns];
+        }
+    }
+}
+
 /* What the passes that are not made may add up to. */
 static const double SETTLED = 1e-12;
 
@@ -304,16 +342,22 @@ lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
     const size_t n = (size_t)w->nodes, rows = v * n * 4 * n;
     lq_hits hits = {.level = w->level, .sides = w->sides};
     lq_hits_values x;
-    if (!lq_hits_values_make(&x, w->level))
+    const size_t size = 4 * n * (size_t)w->depths;
+    lq_v8 *source = (lq_v8 *)(void *)lq_zeros(size * LQ_LANES);
+    if (!source || !lq_hits_values_make(&x, w->level)) {
+        free(source);
         return lq_fail(error, LQ_NO_MEMORY, "no memory for the rewards of an interface");
+    }
+    x.source = source;
     for (int s = 0; s < w->sides; s++) {
         hits.fall[s] = w->fall[s] + rows;
         hits.rise[s] = w->rise[s] + rows;
     }
-    for (size_t l = 0; l < LQ_LANES && first + l < w->columns; l++) x.reward[first + l][l] = 1.0;
+    for (size_t l = 0; l < LQ_LANES && first + l < w->columns; l++) load_source(w, v, first + l, l, source);
     const bool settled = lq_hits_solve(&hits, &x, SETTLED);
     if (settled) read_batch(w, v, first, &x);
     lq_hits_values_free(&x);
+    free(source);
     return settled ? LQ_OK
                    : lq_fail(error, LQ_NOT_CONVERGED, "the iteration at %d cosines did not settle", w->nodes);
 }
@@ -321,16 +365,6 @@ lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
 /* ======================================================================================
  *                                        Blocks
  * ====================================================================================== */
-
-/* Interpolation from the axis of one medium to the nodes of the level, [node * axis + a]. */
-static lq_status node_weights(const lq_surface_work *w, int side, double **weights, lq_error *error) {
-    const lq_node_axis *axis = w->spec.axis[side];
-    *weights = malloc((size_t)(w->nodes * axis->count) * sizeof **weights);
-    if (!*weights) return lq_fail(error, LQ_NO_MEMORY, "no memory for the block of an interface");
-    for (int j = 0; j < w->nodes; j++)
-        lq_node_axis_weights(axis, w->level->axis.mu[j], *weights + j * axis->count);
-    return LQ_OK;
-}
 
 /* What the worths of a dielectric's row are scaled by, so that with the light that leaves at once they count all
  * of it. */
@@ -342,32 +376,26 @@ static double worth_scale(const lq_surface_work *w, int side, size_t row, int ma
     return worth > 1e-12 ? (1.0 - leaves) / worth : 1.0;
 }
 
-/* One row of a block: what leaves at once, and the worths taken to the axes. */
-static void fill_row(const lq_surface_work *w, int side, size_t row, size_t v, double scale,
-                     double *const weights[2], lq_block *block) {
-    const size_t n = (size_t)w->nodes, at = row * variants(w) + v;
+/* One row of a block: what leaves at once, and what the rest is worth. */
+static void fill_row(const lq_surface_work *w, int side, size_t row, size_t v, double scale, lq_block *block) {
+    const size_t at = row * variants(w) + v, own = axis_count(&w->spec, side), above = axis_count(&w->spec, 0);
     const double *leaving = w->entry[side].leaving + at * leaving_size(w);
     const double *worth = w->entry[side].worth + at * w->columns;
     for (int way = 0; way < w->sides; way++) {
         const int out = way == 0 ? side : 1 - side;
         const size_t count = axis_count(&w->spec, out);
         double *to = (way == 0 ? block->r[side] : block->t[side]) + row * count;
-        memcpy(to, leaving, count * sizeof *to);
-        leaving += count;
-        if (w->spec.scattering == LQ_SINGLE) continue;
-        for (size_t j = 0; j < n; j++) {
-            const double factor = scale * worth[(size_t)out * n + j];
-            for (size_t a = 0; a < count; a++) to[a] += factor * weights[out][j * count + a];
-        }
+        for (size_t a = 0; a < count; a++)
+            to[a] = leaving[(way == 0 ? 0 : own) + a] + scale * worth[(out == 0 ? 0 : above) + a];
     }
 }
 
-static void fill_rough(const lq_surface_work *w, int material, double *const weights[2], lq_block *blocks) {
+static void fill_rough(const lq_surface_work *w, int material, lq_block *blocks) {
     for (int side = 0; side < w->sides; side++)
         for (size_t row = 0; row < w->spec.entry_count[side]; row++) {
             const double scale = worth_scale(w, side, row, material);
             for (size_t mode = 0; mode < LQ_MODES; mode++)
-                fill_row(w, side, row, (size_t)material * LQ_MODES + mode, scale, weights, &blocks[mode]);
+                fill_row(w, side, row, (size_t)material * LQ_MODES + mode, scale, &blocks[mode]);
         }
 }
 
@@ -411,15 +439,11 @@ static lq_status make_blocks(const lq_surface *s, lq_block *blocks, lq_error *er
 
 lq_status lq_surface_blocks(const lq_surface_work *w, int material, lq_block blocks[LQ_MODES],
                             lq_error *error) {
-    double *weights[2] = {NULL, NULL};
     memset(blocks, 0, LQ_MODES * sizeof *blocks);
     lq_status status = make_blocks(&w->spec, blocks, error);
-    for (int side = 0; w->level && side < w->sides && status == LQ_OK; side++)
-        status = node_weights(w, side, &weights[side], error);
-    if (status == LQ_OK && w->level) fill_rough(w, material, weights, blocks);
+    if (status == LQ_OK && w->level) fill_rough(w, material, blocks);
     else if (status == LQ_OK && w->spec.diffuse) fill_diffuse(&w->spec, material, blocks);
     else if (status == LQ_OK) fill_smooth(&w->spec, material, blocks);
-    for (int i = 0; i < 2; i++) free(weights[i]);
     for (int mode = 0; status != LQ_OK && mode < LQ_MODES; mode++) lq_block_free(&blocks[mode]);
     return status;
 }
