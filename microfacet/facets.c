@@ -13,7 +13,8 @@ typedef struct view {
     double alpha;
     double eta;               /* of the refraction; 0: reflection */
     double v_z, sin_v, theta; /* the direction and its angle to the z axis, in [0, pi] */
-    const lq_gauss *inner;
+    const lq_gauss *inner, *part;
+    const lq_facet_cuts *cuts; /* may be NULL */
     const lq_microfacet_kernels *kernels;
 } view;
 
@@ -42,6 +43,23 @@ static void add_horizon_crossings(lq_panels *panels, const view *w) {
     lq_panels_add(panels, 0.5 * (0.5 * pi + w->theta), true); /* psi = 0 */
 }
 
+/* The angle d at which refraction turns light by `turn`: sin(d - turn) = sin d / eta. Negative where there is none. */
+static double refracted_turn(const view *w, double turn) {
+    const double side = cos(turn) - 1.0 / w->eta, across = sin(turn);
+    const bool turns = w->eta > 1.0 ? across > 0.0 && side > 0.0 : across < 0.0 && side < 0.0;
+    return turns ? atan2(fabs(across), fabs(side)) : -1.0;
+}
+
+/* Where the extreme facets send light to a cosine at which its worth is cut: an azimuth begins or ends to divide. */
+static void add_cuts(lq_panels *panels, const view *w) {
+    for (int i = 0; w->cuts && i < w->cuts->count; i++) {
+        const double angle = acos(w->cuts->cosine[i]);
+        const double turns[3] = {w->theta - angle, w->theta + angle, angle - w->theta};
+        for (int t = 0; t < 3; t++)
+            lq_panels_add(panels, w->eta > 0.0 ? refracted_turn(w, turns[t]) : 0.5 * turns[t], false);
+    }
+}
+
 /* Masking changes over reflected cosines of the size of the incident one: at grazing incidence that is a
  * thin layer of facets around those that reflect along the horizon. */
 static void grade_grazing(lq_panels *panels, double theta) {
@@ -67,6 +85,7 @@ static bool make_panels(const view *w, const lq_panels *extra, lq_panels *panels
     lq_panels_grade(panels, w->theta, w->alpha, 4.0);
     grade_grazing(panels, w->theta);
     add_extra(panels, extra, false);
+    add_cuts(panels, w);
     lq_panels_separate(panels);
     return true;
 }
@@ -85,6 +104,19 @@ static double crossing(double cos_b, double sin_b, const view *w) {
     const double level = -cos_b * w->v_z, reach = sin_b * w->sin_v;
     if (reach != 0.0) return level / reach;
     return (level < 0.0) == (sin_b >= 0.0) ? -2.0 : 2.0;
+}
+
+/* Half-angles, ascending, at which a piece of rising light is divided: where it passes a cut. */
+static int divisions(const view *w, const piece *p, double cos_b, double sin_b, double lambda, double *at) {
+    const double reach = sin_b * w->sin_v;
+    int count = 0;
+    for (int i = 0; w->cuts && i < w->cuts->count && reach != 0.0; i++) {
+        /* Light falls as the azimuth grows where it is turned upwards: the highest cosine comes first then. */
+        const double cosine = w->cuts->cosine[reach > 0.0 ? w->cuts->count - 1 - i : i];
+        const double h = half_chi((cosine - cos_b * w->v_z) / reach, lambda);
+        if (h > p->from && h < p->to) at[count++] = h;
+    }
+    return count;
 }
 
 /* Cubic map towards a singular end: the reflected cosine vanishes there, linearly, and what is integrated
@@ -108,6 +140,21 @@ static int piece_nodes(const piece *p, const lq_gauss *rule, double *h, double *
         }
     }
     return rule->count;
+}
+
+/* The parts of a divided piece, as many of them as there is room for. */
+static int divided_nodes(const view *w, const piece *p, const double *at, int count, double *h, double *dh) {
+    int nodes = 0;
+    double from = p->from;
+    for (int i = 0; i <= count; i++) {
+        const bool last = i == count || nodes + 2 * w->part->count > LQ_FAN_MAX - w->inner->count;
+        const double to = last ? p->to : at[i];
+        const piece part = {from, to, p->singular_from && i == 0, p->singular_to && last};
+        nodes += piece_nodes(&part, w->part, h + nodes, dh + nodes);
+        if (last) break;
+        from = to;
+    }
+    return nodes;
 }
 
 /* Cosine and sine of the angle between v and the image direction: 2d, or d - t. Refracted light goes to
@@ -157,8 +204,10 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
     const piece farther = {horizon, upright, true, false};
     const piece *above = near_up ? &nearer : &farther, *below = near_up ? &farther : &nearer;
 
-    double h[LQ_FAN_MAX], cos2[LQ_FAN_MAX], sin2[LQ_FAN_MAX], density[LQ_FAN_MAX];
-    fan->up = piece_nodes(above, w->inner, h, fan->weight);
+    double h[LQ_FAN_MAX], cos2[LQ_FAN_MAX], sin2[LQ_FAN_MAX], density[LQ_FAN_MAX], at[LQ_FACET_CUTS_MAX];
+    const int divided = divisions(w, above, cos_image, sin_image, c.lambda, at);
+    fan->up = divided ? divided_nodes(w, above, at, divided, h, fan->weight)
+                      : piece_nodes(above, w->inner, h, fan->weight);
     fan->count = fan->up + piece_nodes(below, w->inner, h + fan->up, fan->weight + fan->up);
     w->kernels->place_facets(&c, (size_t)fan->count, h, fan->weight, fan->mirror, fan->e_z, cos2, sin2);
     w->ndf->density(w->ndf, w->alpha, (size_t)fan->count, cos2, sin2, density);
@@ -170,6 +219,7 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
 void lq_facet_rule_make(lq_facet_rule *rule, int outer, int inner) {
     lq_gauss_make(&rule->outer, outer);
     lq_gauss_make(&rule->inner, inner);
+    lq_gauss_make(&rule->part, 4 + inner / 2);
 }
 
 static void visit_all(const view *w, const lq_gauss *outer, const lq_panels *extra, lq_fan_visitor *visit,
@@ -194,7 +244,20 @@ void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, 
 void lq_facets_visit_refracted(const lq_ndf *ndf, double alpha, double eta, double v_z, double sin_v,
                                const lq_facet_rule *rule, const lq_panels *extra, lq_fan_visitor *visit,
                                void *user) {
-    const view w = {
-        ndf, alpha, eta, v_z, sin_v, atan2(sin_v, v_z), &rule->inner, lq_microfacet_kernels_get()};
-    visit_all(&w, &rule->outer, extra, visit, user);
+    const lq_facet_view v = {ndf, alpha, eta, v_z, sin_v, rule, extra, NULL};
+    lq_facets_visit_view(&v, visit, user);
+}
+
+void lq_facets_visit_view(const lq_facet_view *v, lq_fan_visitor *visit, void *user) {
+    const view w = {.ndf = v->ndf,
+                    .alpha = v->alpha,
+                    .eta = v->eta,
+                    .v_z = v->v_z,
+                    .sin_v = v->sin_v,
+                    .theta = atan2(v->sin_v, v->v_z),
+                    .inner = &v->rule->inner,
+                    .part = &v->rule->part,
+                    .cuts = v->cuts,
+                    .kernels = lq_microfacet_kernels_get()};
+    visit_all(&w, &v->rule->outer, v->extra, visit, user);
 }

@@ -21,7 +21,7 @@
 
 #include <stddef.h>
 
-enum { LQ_FAN_MAX = 128 };
+enum { LQ_FAN_MAX = 256, LQ_FACET_CUTS_MAX = 12 };
 
 /* The facets at one angle d from v, above and below the split of the azimuth. */
 typedef struct lq_fan {
@@ -40,8 +40,16 @@ typedef void lq_fan_visitor(void *user, const lq_fan *fan);
 
 typedef struct lq_facet_rule {
     lq_gauss outer; /* nodes per panel of d */
-    lq_gauss inner; /* nodes per piece of azimuth: two pieces at most, up to LQ_FAN_MAX / 2 each */
+    lq_gauss inner; /* nodes per piece of azimuth: two pieces at most, up to LQ_FAN_MAX / 4 each */
+    lq_gauss part;  /* nodes per part of a piece that cosines divide (lq_facet_cuts) */
 } lq_facet_rule;
+
+/* Cosines, ascending, at which what light is worth that leaves the surface is not smooth: azimuth and d are divided
+ * where facets send light there. */
+typedef struct lq_facet_cuts {
+    int count;
+    double cosine[LQ_FACET_CUTS_MAX];
+} lq_facet_cuts;
 
 void lq_facet_rule_make(lq_facet_rule *rule, int outer, int inner);
 
@@ -57,5 +65,17 @@ void lq_facets_visit(const lq_ndf *ndf, double alpha, double v_z, double sin_v, 
 void lq_facets_visit_refracted(const lq_ndf *ndf, double alpha, double eta, double v_z, double sin_v,
                                const lq_facet_rule *rule, const lq_panels *extra, lq_fan_visitor *visit,
                                void *user);
+
+/* Both, with cosines that divide the integral; eta = 0: reflection. `cuts` may be NULL. */
+typedef struct lq_facet_view {
+    const lq_ndf *ndf;
+    double alpha, eta;
+    double v_z, sin_v;
+    const lq_facet_rule *rule;
+    const lq_panels *extra;
+    const lq_facet_cuts *cuts;
+} lq_facet_view;
+
+void lq_facets_visit_view(const lq_facet_view *view, lq_fan_visitor *visit, void *user);
 
 #endif

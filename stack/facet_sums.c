@@ -111,10 +111,11 @@ lq_status lq_facet_sums_make(lq_facet_sums *f, lq_error *error) {
     f->sine = fmax(lq_sine(fabs(f->v_z)), SINE_MIN);
     f->area = f->masked ? lq_area_above(f->ndf, f->alpha, f->v_z, f->sine) : 0.0;
     f->total = 0.0;
-    lq_facets_visit(f->ndf, f->alpha, f->v_z, f->sine, f->rule, f->kinks, add_reflection, f);
-    if (f->eta > 0.0)
-        lq_facets_visit_refracted(f->ndf, f->alpha, f->eta, f->v_z, f->sine, f->rule, f->kinks,
-                                  add_refraction, f);
+    lq_facet_view view = {f->ndf, f->alpha, 0.0, f->v_z, f->sine, f->rule, f->kinks, f->cuts[0]};
+    lq_facets_visit_view(&view, add_reflection, f);
+    view.eta = f->eta;
+    view.cuts = f->cuts[1];
+    if (f->eta > 0.0) lq_facets_visit_view(&view, add_refraction, f);
     return LQ_OK;
 }
 

@@ -29,6 +29,7 @@ typedef struct lq_facet_sums {
     const lq_panels *kinks;
     const lq_node_axis *nodes;
     const lq_node_axis *leaving[2]; /* own side, other side */
+    const lq_facet_cuts *cuts[2];   /* where they are not smooth; NULL: nowhere */
     bool masked; /* light arrives from outside: ESCAPES has the masking of each facet, RISES what it stops */
     /* Results and work. */
     double sine, area, total;

@@ -28,6 +28,7 @@ struct lq_surface_work {
     int nodes, depths, sides;
     size_t columns; /* rewards: nodes of the axes of both media */
     lq_panels kinks[2];
+    lq_facet_cuts cuts[2]; /* of the axes */
     double *memory;
     double *fall[2], *rise[2]; /* [(material * LQ_MODES + mode) * nodes + i][4 nodes] */
     /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling i]
@@ -109,6 +110,14 @@ static double split_of(const lq_surface *s) {
     return s->alpha < 0.3 ? cosine : eta;
 }
 
+static void make_cuts(lq_surface_work *w) {
+    for (int s = 0; s < w->sides; s++) {
+        const lq_node_axis *axis = w->spec.axis[s];
+        for (int e = 1; e < axis->elements && e <= LQ_FACET_CUTS_MAX; e++)
+            w->cuts[s].cosine[w->cuts[s].count++] = axis->bound[e];
+    }
+}
+
 static void fill_survival(lq_surface_work *w) {
     for (int s = 0; s < w->sides; s++) {
         const lq_node_axis *axis = w->spec.axis[s];
@@ -131,6 +140,7 @@ static bool allocate(lq_surface_work *w, int level) {
     w->depths = w->level->depths.count;
     w->columns = leaving_size(w);
     make_kinks(w);
+    make_cuts(w);
     w->memory = lq_zeros(place_arrays(w));
     if (w->memory) place_arrays(w);
     if (w->memory) fill_survival(w);
@@ -172,7 +182,9 @@ static lq_facet_sums sums_of(const lq_surface_work *w, int side, double v_z) {
                            .rule = &w->level->rule,
                            .kinks = &w->kinks[side],
                            .nodes = &w->level->axis,
-                           .leaving = {s->axis[side], s->axis[1 - side]}};
+                           .leaving = {s->axis[side], s->axis[1 - side]},
+                           .cuts = {s->sharp[side] ? &w->cuts[side] : NULL,
+                                    s->sharp[1 - side] ? &w->cuts[1 - side] : NULL}};
 }
 
 /* The row of one node of the level, rising (v below the horizon) or falling. */

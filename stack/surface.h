@@ -28,6 +28,7 @@ typedef struct lq_surface {
     double n[LQ_STACK_CHANNELS], kappa[LQ_STACK_CHANNELS]; /* conductors: relative to side 0 */
     double rho[LQ_STACK_CHANNELS];
     const lq_node_axis *axis[2];                           /* of the media on both sides */
+    bool sharp[2]; /* other interfaces of the stack, smooth or nearly so, make steps at the cuts of the axis */
     const double *entry[2];                                /* cosines at which light arrives */
     size_t entry_count[2];
 } lq_surface;
