@@ -142,15 +142,30 @@ static int piece_nodes(const piece *p, const lq_gauss *rule, double *h, double *
     return rule->count;
 }
 
-/* The parts of a divided piece, as many of them as there is room for. */
-static int divided_nodes(const view *w, const piece *p, const double *at, int count, double *h, double *dh) {
+/* Quadratic map towards the end of a part where light leaves along a cut, from above: there its worth has a root. */
+static int part_nodes(double from, double to, bool root_from, const lq_gauss *rule, double *h, double *dh) {
+    const double width = to - from;
+    for (int i = 0; i < rule->count; i++) {
+        const double u = rule->node[i], w = rule->weight[i] * width, to_end = 1.0 - u;
+        h[i] = root_from ? from + width * u * u : to - width * to_end * to_end;
+        dh[i] = 2.0 * (root_from ? u : to_end) * w;
+    }
+    return rule->count;
+}
+
+/* The parts of a divided piece, as many of them as there is room for; the lowest cosines lie at its end or, where
+ * `ascends`, at its start. */
+static int divided_nodes(const view *w, const piece *p, const double *at, int count, bool ascends, double *h,
+                         double *dh) {
     int nodes = 0;
     double from = p->from;
     for (int i = 0; i <= count; i++) {
         const bool last = i == count || nodes + 2 * w->part->count > LQ_FAN_MAX - w->inner->count;
         const double to = last ? p->to : at[i];
         const piece part = {from, to, p->singular_from && i == 0, p->singular_to && last};
-        nodes += piece_nodes(&part, w->part, h + nodes, dh + nodes);
+        const bool at_cut = ascends ? i > 0 : !last;
+        nodes += at_cut ? part_nodes(from, to, ascends, w->part, h + nodes, dh + nodes)
+                        : piece_nodes(&part, w->part, h + nodes, dh + nodes);
         if (last) break;
         from = to;
     }
@@ -206,7 +221,7 @@ static void fan_make(const view *w, double d, double weight, lq_fan *fan) {
 
     double h[LQ_FAN_MAX], cos2[LQ_FAN_MAX], sin2[LQ_FAN_MAX], density[LQ_FAN_MAX], at[LQ_FACET_CUTS_MAX];
     const int divided = divisions(w, above, cos_image, sin_image, c.lambda, at);
-    fan->up = divided ? divided_nodes(w, above, at, divided, h, fan->weight)
+    fan->up = divided ? divided_nodes(w, above, at, divided, sin_image < 0.0, h, fan->weight)
                       : piece_nodes(above, w->inner, h, fan->weight);
     fan->count = fan->up + piece_nodes(below, w->inner, h + fan->up, fan->weight + fan->up);
     w->kernels->place_facets(&c, (size_t)fan->count, h, fan->weight, fan->mirror, fan->e_z, cos2, sin2);

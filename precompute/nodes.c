@@ -63,19 +63,26 @@ static bool place_nodes(lq_node_axis *axis) {
 }
 
 bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split) {
-    *axis = (lq_node_axis){.count = count, .elements = split > 0.0 && split < 1.0 ? 2 : 1};
-    axis->nodes = count / axis->elements;
-    axis->bound[1] = split;
+    const bool divided = split > 0.0 && split < 1.0;
+    return lq_node_axis_make_divided(axis, alpha, sense, &split, divided, divided ? count / 2 : count);
+}
+
+static void start_axis(lq_node_axis *axis, const double *splits, int split_count, int nodes) {
+    *axis = (lq_node_axis){.count = (split_count + 1) * nodes, .elements = split_count + 1, .nodes = nodes};
+    for (int e = 0; e < split_count; e++) axis->bound[e + 1] = splits[e];
     axis->bound[axis->elements] = 1.0;
+}
+
+bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense, const double *splits,
+                               int split_count, int nodes) {
+    start_axis(axis, splits, split_count, nodes);
     for (int e = 0; e < axis->elements; e++)
         axis->map[e] = map_of(alpha, sense, axis->bound[e], axis->bound[e + 1]);
     return place_nodes(axis);
 }
 
 bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes) {
-    *axis = (lq_node_axis){.count = (cut_count + 1) * nodes, .elements = cut_count + 1, .nodes = nodes};
-    for (int e = 0; e < cut_count; e++) axis->bound[e + 1] = cuts[e];
-    axis->bound[cut_count + 1] = 1.0;
+    start_axis(axis, cuts, cut_count, nodes);
     for (int e = 0; e <= cut_count; e++) {
         const double from = axis->bound[e], width = axis->bound[e + 1] - from;
         axis->map[e] = (lq_cosine_map){.root = 1, .from = from, .scale = 2.0 / sqrt(width), .shift = -1.0};

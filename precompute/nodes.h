@@ -32,7 +32,11 @@ typedef struct lq_node_axis {
  * without memory; free it in either case. */
 bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split);
 
-/* An axis divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes` an element,
+/* The same, divided at `split_count` cosines, ascending in (0,1), fewer than LQ_ELEMENTS_MAX; `nodes` an element. */
+bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense, const double *splits,
+                               int split_count, int nodes);
+
+/* An axis in roots, divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes` an element,
  * LQ_NODES_MAX in all. False without memory; free it in either case. */
 bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes);
 

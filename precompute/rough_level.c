@@ -98,8 +98,8 @@ static bool leaving_make(lq_leaving *l, const lq_ndf *ndf, double alpha, int cou
 
 /* `scale`: the cosine below which the nodes are dense. */
 static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale, const resolution *l,
-                                  double split) {
-    const size_t n = (size_t)l->nodes, d = (size_t)l->depths;
+                                  const lq_level_splits *splits) {
+    const size_t n = (size_t)(l->nodes * (splits->count + 1)), d = (size_t)l->depths;
     lq_rough_level *r = calloc(1, sizeof *r);
     if (!r) return NULL;
     lq_depths_make(&r->depths, l->depths);
@@ -108,12 +108,13 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
     r->travel_up = lq_zeros(n * d * d);
     r->survival = lq_zeros(n * d);
     r->refracted_hits = lq_zeros(ARRIVALS * d * n);
-    const bool axis = lq_node_axis_make(&r->axis, scale, LQ_RISING, l->nodes, split);
+    const bool axis = lq_node_axis_make_divided(&r->axis, scale, LQ_RISING, splits->at, splits->count,
+                                                l->nodes);
     if (!axis || !r->travel_down || !r->travel_up || !r->survival || !r->refracted_hits) {
         lq_rough_level_free(r);
         return NULL;
     }
-    for (int i = 0; i < l->nodes; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
+    for (int i = 0; i < r->axis.count; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
     r->theta_from = pow(1.0 + lq_lambda(ndf, alpha, LQ_GRAZING), -0.125);
     fill_travel(r);
     fill_refracted(r);
@@ -122,7 +123,8 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
 
 static lq_rough_level *level_with_leaving(const lq_ndf *ndf, double alpha, int level, int band) {
     const resolution *l = band >= NEARLY_MATCHED ? &matched[level] : &regular[level];
-    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, 0.0);
+    const lq_level_splits none = {0};
+    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, &none);
     if (r && leaving_make(&r->leaving[0], ndf, alpha, leaving_nodes[level][0]) &&
         leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1]))
         return r;
@@ -184,6 +186,6 @@ const lq_rough_level *lq_rough_level_get(lq_rough *rough, double eta, int level)
 }
 
 lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *l,
-                                    double split) {
-    return level_make(ndf, alpha, ldexp(alpha, -band_of(alpha, eta)), l, split);
+                                    const lq_level_splits *splits) {
+    return level_make(ndf, alpha, ldexp(alpha, -band_of(alpha, eta)), l, splits);
 }

@@ -33,15 +33,21 @@ struct lq_rough_level {
 /* lq_refracted_hits of light that arrives with `lambda` at all rising nodes: hits[at * nodes + j]. */
 void lq_rough_level_refracted(const lq_rough_level *level, double lambda, double *hits);
 
-/* Node cosines (a multiple of 8), depths (of 4), quadrature nodes per panel of d and per piece of azimuth. */
+/* Node cosines (a multiple of 4), depths (too), quadrature nodes per panel of d and per piece of azimuth. */
 typedef struct lq_resolution {
     int nodes, depths, outer, inner;
 } lq_resolution;
 
-/* A level of one's own, for an interface of relative index eta either way; its axis is divided at `split` in (0,1),
- * 0: not at all. It has no leaving nodes. NULL without memory. */
+/* Cosines that divide the axis of a level, ascending in (0,1). */
+typedef struct lq_level_splits {
+    int count;
+    double at[LQ_ELEMENTS_MAX];
+} lq_level_splits;
+
+/* A level of one's own, for an interface of relative index eta either way; its nodes are those of one element of
+ * the axis. It has no leaving nodes. NULL without memory. */
 lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *resolution,
-                                    double split);
+                                    const lq_level_splits *splits);
 void lq_rough_level_free(lq_rough_level *level); /* NULL: nothing */
 
 /* Made when first asked for, and kept in `rough`; NULL without memory. */

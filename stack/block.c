@@ -130,7 +130,7 @@ static lq_status add_half(const lq_block *near, int s, const lq_block *far, cons
 
 lq_status lq_block_add(const lq_block *above, const double *crossing, const lq_block *below, lq_block *sum,
                        lq_error *error) {
-    lq_status status = no_memory(error);
+    lq_status status = LQ_NO_MEMORY;
     if (lq_block_make(sum, above->entries[0], below->entries[1], above->nodes[0], below->nodes[1]))
         status = add_half(above, 0, below, crossing, sum, error);
     if (status == LQ_OK) status = add_half(below, 1, above, crossing, sum, error);

@@ -46,7 +46,7 @@ static lq_status fill_entries(solving *s, size_t index, lq_surface *spec, lq_err
         spec->entry[side] = mu;
         spec->entry_count[side] = inside + asked;
         spec->axis[side] = &s->axis[surface->axis[side]];
-        spec->sharp[side] = getenv("SHARP");
+        spec->sharp[side] = s->plan->axis[surface->axis[side]].sharp;
     }
     if (spec->opaque) spec->axis[1] = NULL;
     return LQ_OK;

@@ -114,8 +114,10 @@ static lq_plan_axis axis_of(double n, const double *all, size_t count) {
     for (size_t i = count; i-- > 0;) { /* the nearest index first: ascending cosines */
         const double ratio = all[i] / n, cosine = ratio < 1.0 ? sqrt((1.0 - ratio) * (1.0 + ratio)) : 0.0;
         const double before = axis.cut_count ? axis.cut[axis.cut_count - 1] : 0.0;
-        if (cosine > before + CUTS_APART && cosine < 1.0 - CUTS_APART && axis.cut_count + 1 < LQ_ELEMENTS_MAX)
+        if (cosine > before + CUTS_APART && cosine < 1.0 - CUTS_APART && axis.cut_count + 1 < LQ_ELEMENTS_MAX) {
+            axis.rarer[axis.cut_count] = all[i];
             axis.cut[axis.cut_count++] = cosine;
+        }
     }
     return axis;
 }
@@ -193,6 +195,27 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
     }
 }
 
+/* Steps that an interface of more than this roughness makes are as wide as lobes are: nodes resolve them. */
+static const double SHARP_ALPHA = 0.1;
+
+static bool makes_steps(const lq_plan *plan, double rarer) {
+    for (size_t i = 0; i < plan->surface_count; i++) {
+        const lq_plan_surface *s = &plan->surface[i];
+        if (!s->spec.opaque && s->spec.alpha < SHARP_ALPHA &&
+            (plan->axis[s->axis[0]].n == rarer || plan->axis[s->axis[1]].n == rarer))
+            return true;
+    }
+    return false;
+}
+
+static void find_sharp(lq_plan *plan) {
+    for (size_t i = 0; i < plan->axis_count; i++) {
+        lq_plan_axis *a = &plan->axis[i];
+        for (int c = 0; c < a->cut_count && a->sharp.count < LQ_FACET_CUTS_MAX; c++)
+            if (makes_steps(plan, a->rarer[c])) a->sharp.cosine[a->sharp.count++] = a->cut[c];
+    }
+}
+
 static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, bool from_below,
                             lq_scattering scattering, lq_error *error) {
     lq_plan_chain *chain = &plan->chain[channel];
@@ -237,6 +260,7 @@ lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq
         status = lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", stack->layer_count);
     for (int c = 0; c < plan->channels && status == LQ_OK; c++)
         status = make_chain(plan, stack, c, from_below, scattering, error);
+    if (status == LQ_OK) find_sharp(plan);
     if (status != LQ_OK) lq_plan_free(plan);
     return status;
 }

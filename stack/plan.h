@@ -14,6 +14,8 @@ typedef struct lq_plan_axis {
     double n;
     int cut_count;
     double cut[LQ_ELEMENTS_MAX];
+    double rarer[LQ_ELEMENTS_MAX]; /* index of the medium that light is totally reflected towards */
+    lq_facet_cuts sharp; /* the cuts that smooth or nearly smooth interfaces make */
 } lq_plan_axis;
 
 typedef struct lq_plan_surface {

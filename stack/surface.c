@@ -28,7 +28,6 @@ struct lq_surface_work {
     int nodes, depths, sides;
     size_t columns; /* rewards: nodes of the axes of both media */
     lq_panels kinks[2];
-    lq_facet_cuts cuts[2]; /* of the axes */
     double *memory;
     double *fall[2], *rise[2]; /* [(material * LQ_MODES + mode) * nodes + i][4 nodes] */
     /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling i]
@@ -101,21 +100,41 @@ static void make_kinks(lq_surface_work *w) {
 static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
     {16, 12, 10, 16}, {24, 12, 16, 20}, {32, 16, 20, 28}, {48, 20, 32, 40}, {64, 24, 40, 48}, {96, 32, 56, 64}};
 
-/* Where the node axis is divided. In the denser medium what falls on the facets turns at the critical angle, cos =
- * sqrt(1 - eta^2), within a width alpha, and what rises meets no facet below that angle from cos = eta on, where the
- * cone touches the horizon; divided there, 20 nodes do what 32 to 48 do undivided. */
-static double split_of(const lq_surface *s) {
-    const double eta = fmin(s->eta, 1.0 / s->eta), cosine = sqrt((1.0 - eta) * (1.0 + eta));
-    if (s->opaque || cosine < 0.05) return 0.0;
-    return s->alpha < 0.3 ? cosine : eta;
+enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
+
+/* Splits closer than this to each other or to an end are left out: their element would have nodes for nothing. */
+static const double SPLITS_APART = 0.02;
+
+static void add_split(lq_level_splits *splits, double at) {
+    int i = 0;
+    if (at < SPLITS_APART || at > 1.0 - SPLITS_APART || splits->count == SPLITS_MAX) return;
+    while (i < splits->count && splits->at[i] < at) i++;
+    if (i < splits->count && splits->at[i] - at < SPLITS_APART) return;
+    if (i > 0 && at - splits->at[i - 1] < SPLITS_APART) return;
+    for (int k = splits->count++; k > i; k--) splits->at[k] = splits->at[k - 1];
+    splits->at[i] = at;
 }
 
-static void make_cuts(lq_surface_work *w) {
-    for (int s = 0; s < w->sides; s++) {
-        const lq_node_axis *axis = w->spec.axis[s];
-        for (int e = 1; e < axis->elements && e <= LQ_FACET_CUTS_MAX; e++)
-            w->cuts[s].cosine[w->cuts[s].count++] = axis->bound[e];
-    }
+/* Where the node axis is divided: where other interfaces make steps, and in the denser medium, where what falls on
+ * the facets turns at the critical angle, cos = sqrt(1 - eta^2), within a width alpha, and what rises meets no facet
+ * below that angle from cos = eta on, where the cone touches the horizon. Divided there, 20 nodes do what 32 to 48
+ * do undivided. */
+static lq_level_splits splits_of(const lq_surface *s) {
+    const double eta = fmin(s->eta, 1.0 / s->eta);
+    lq_level_splits splits = {0};
+    for (int side = 0; side < (s->opaque ? 1 : 2); side++)
+        for (int i = 0; i < s->sharp[side].count; i++) add_split(&splits, s->sharp[side].cosine[i]);
+    if (!s->opaque && eta < 0.9) add_split(&splits, s->alpha < 0.3 ? sqrt((1.0 - eta) * (1.0 + eta)) : eta);
+    return splits;
+}
+
+static lq_rough_level *make_level(const lq_surface *s, int level) {
+    const lq_level_splits splits = splits_of(s);
+    lq_resolution r = resolutions[level];
+    const int each = (r.nodes / (splits.count + 1) + 3) / 4 * 4;
+    r.nodes = each > FEWEST_NODES ? each : FEWEST_NODES;
+    /* A conductor is like media that differ: no facet lets light go on almost undeviated. */
+    return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 2.0 : s->eta, &r, &splits);
 }
 
 static void fill_survival(lq_surface_work *w) {
@@ -133,14 +152,12 @@ static bool allocate(lq_surface_work *w, int level) {
     const lq_surface *s = &w->spec;
     w->sides = s->opaque ? 1 : 2;
     if (is_closed(s)) return true;
-    /* A conductor is like media that differ: no facet lets light go on almost undeviated. */
-    w->level = lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 2.0 : s->eta, &resolutions[level], split_of(s));
+    w->level = make_level(s, level);
     if (!w->level) return false;
     w->nodes = w->level->axis.count;
     w->depths = w->level->depths.count;
     w->columns = leaving_size(w);
     make_kinks(w);
-    make_cuts(w);
     w->memory = lq_zeros(place_arrays(w));
     if (w->memory) place_arrays(w);
     if (w->memory) fill_survival(w);
@@ -183,8 +200,7 @@ static lq_facet_sums sums_of(const lq_surface_work *w, int side, double v_z) {
                            .kinks = &w->kinks[side],
                            .nodes = &w->level->axis,
                            .leaving = {s->axis[side], s->axis[1 - side]},
-                           .cuts = {s->sharp[side] ? &w->cuts[side] : NULL,
-                                    s->sharp[1 - side] ? &w->cuts[1 - side] : NULL}};
+                           .cuts = {&s->sharp[side], &s->sharp[1 - side]}};
 }
 
 /* The row of one node of the level, rising (v below the horizon) or falling. */

@@ -12,6 +12,7 @@
 #ifndef LACQUER_STACK_SURFACE_H
 #define LACQUER_STACK_SURFACE_H
 
+#include "microfacet/facets.h"
 #include "precompute/dielectric.h"
 #include "precompute/nodes.h"
 #include "stack/block.h"
@@ -28,7 +29,7 @@ typedef struct lq_surface {
     double n[LQ_STACK_CHANNELS], kappa[LQ_STACK_CHANNELS]; /* conductors: relative to side 0 */
     double rho[LQ_STACK_CHANNELS];
     const lq_node_axis *axis[2];                           /* of the media on both sides */
-    bool sharp[2]; /* other interfaces of the stack, smooth or nearly so, make steps at the cuts of the axis */
+    lq_facet_cuts sharp[2]; /* cosines of the axes at which interfaces, smooth or nearly so, make steps */
     const double *entry[2];                                /* cosines at which light arrives */
     size_t entry_count[2];
 } lq_surface;
