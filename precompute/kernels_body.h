@@ -113,6 +113,56 @@ static void moments(const lq_cosine_map *map, size_t count, const double *cosine
     }
 }
 
+/* The same for three weights of each cosine: the polynomials are made once. */
+static inline void moments3_of(int groups, const double *x, const double *w, int count, lq_v8 *sum) {
+    lq_v8 two_x[4], before[4], now[4], weight[3][4];
+    for (int g = 0; g < groups; g++) {
+        memcpy(&now[g], x + g * LQ_LANES, sizeof now[g]);
+        two_x[g] = now[g] + now[g];
+        before[g] = (lq_v8){1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+        for (int k = 0; k < 3; k++) {
+            memcpy(&weight[k][g], w + k * LQ_FACETS_MAX + g * LQ_LANES, sizeof weight[k][g]);
+            sum[k] += weight[k][g];
+        }
+    }
+    for (int m = 1; m < count; m++) {
+        lq_v8 a = sum[3 * m], b = sum[3 * m + 1], c = sum[3 * m + 2];
+        for (int g = 0; g < groups; g++) {
+            const lq_v8 next = two_x[g] * now[g] - before[g];
+            a += weight[0][g] * now[g];
+            b += weight[1][g] * now[g];
+            c += weight[2][g] * now[g];
+            before[g] = now[g];
+            now[g] = next;
+        }
+        sum[3 * m] = a;
+        sum[3 * m + 1] = b;
+        sum[3 * m + 2] = c;
+    }
+}
+
+static void moments3(const lq_cosine_map *map, size_t count, const double *cosine, const double *const *weight,
+                     int count_moments, double *const *out) {
+    double x[LQ_FACETS_MAX], w[3 * LQ_FACETS_MAX];
+    lq_v8 sum[3 * (LQ_NODES_MAX + LQ_LANES)];
+    const size_t groups = (count + LQ_LANES - 1) / LQ_LANES;
+    const int padded = (3 * count_moments + LQ_LANES - 1) / LQ_LANES * LQ_LANES;
+    map_cosines(map, count, cosine, x);
+    for (size_t i = count; i < groups * LQ_LANES; i++) x[i] = 0.0;
+    for (size_t k = 0; k < 3; k++)
+        for (size_t i = 0; i < groups * LQ_LANES; i++) w[k * LQ_FACETS_MAX + i] = i < count ? weight[k][i] : 0.0;
+    memset(sum, 0, (size_t)padded * sizeof sum[0]);
+    size_t g = 0;
+    for (; g + 4 <= groups; g += 4) moments3_of(4, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    for (; g + 2 <= groups; g += 2) moments3_of(2, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    if (g < groups) moments3_of(1, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
+    for (int m = 0; m < 3 * count_moments; m += LQ_LANES) {
+        double eight[LQ_LANES] = {0.0};
+        add_lanes(sum + m, eight);
+        for (int l = 0; l < LQ_LANES && m + l < 3 * count_moments; l++) out[(m + l) % 3][(m + l) / 3] += eight[l];
+    }
+}
+
 static double escaping(double area_in, double mu_i, size_t count, const double *restrict mu_o,
                        const double *restrict area, const double *restrict weight) {
     double part[LQ_LANES] = {0.0}, total = 0.0;
@@ -351,7 +401,7 @@ static void contract(int depths, int nodes, const double *restrict weights, cons
 }
 
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments, escaping, spread,  assemble, sweep,        survival,
+    static const lq_solver_kernels kernels = {moments, moments3, escaping, spread,  assemble, sweep,        survival,
                                               travel,  meet,     average, contract, read_energies};
     return &kernels;
 }

@@ -101,21 +101,38 @@ static int element_of(const lq_node_axis *axis, double mu) {
     return e;
 }
 
+/* The end of the cosines from `from` on that lie in its element *e: neighbours, since they run monotonically. */
+static size_t end_of_run(const lq_node_axis *axis, size_t count, const double *cosine, size_t from, int *e) {
+    *e = element_of(axis, cosine[from]);
+    size_t to = axis->elements == 1 ? count : from + 1;
+    while (to < count && element_of(axis, cosine[to]) == *e) to++;
+    return to;
+}
+
 double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
                             const double *cosine, const double *weight, double *moments) {
     double total = 0.0;
-    for (size_t from = 0; from < count;) {
-        /* Those of one element are neighbours. */
-        const int e = element_of(axis, cosine[from]);
-        size_t to = axis->elements == 1 ? count : from + 1;
-        while (to < count && element_of(axis, cosine[to]) == e) to++;
+    for (size_t from = 0, to; from < count; from = to) {
+        int e;
+        to = end_of_run(axis, count, cosine, from, &e);
         double *of_element = moments + e * axis->nodes;
         const double before = of_element[0];
         kernels->moments(&axis->map[e], to - from, cosine + from, weight + from, axis->nodes, of_element);
         total += of_element[0] - before;
-        from = to;
     }
     return total;
+}
+
+void lq_node_axis_moments3(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
+                           const double *cosine, const double *const weight[3], double *const moments[3]) {
+    for (size_t from = 0, to; from < count; from = to) {
+        int e;
+        to = end_of_run(axis, count, cosine, from, &e);
+        const double *w[3] = {weight[0] + from, weight[1] + from, weight[2] + from};
+        double *of_element[3];
+        for (int k = 0; k < 3; k++) of_element[k] = moments[k] + e * axis->nodes;
+        kernels->moments3(&axis->map[e], to - from, cosine + from, w, axis->nodes, of_element);
+    }
 }
 
 void lq_node_axis_project(const lq_node_axis *axis, const double *moments, double *weights) {

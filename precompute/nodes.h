@@ -47,6 +47,10 @@ void lq_node_axis_free(lq_node_axis *axis);
 double lq_node_axis_moments(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
                             const double *cosine, const double *weight, double *moments);
 
+/* The same of three weights of each cosine. */
+void lq_node_axis_moments3(const lq_node_axis *axis, const lq_solver_kernels *kernels, size_t count,
+                           const double *cosine, const double *const weight[3], double *const moments[3]);
+
 /* From moments to weights on the nodes: sum_i weights[i] f(mu_i) stands for the weighted sum of f. */
 void lq_node_axis_project(const lq_node_axis *axis, const double *moments, double *weights);
 

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "microfacet/fresnel.h"
 #include "system/status.h"
@@ -26,15 +27,16 @@ typedef struct images {
 static void add(lq_facet_sums *f, lq_facet_part part, const lq_node_axis *axis, const images *i,
                 const double *factor) {
     const lq_solver_kernels *kernels = lq_solver_kernels_get();
-    double moment[LQ_NODES_MAX];
+    double moment[LQ_MODES][LQ_NODES_MAX];
+    double *const moments[LQ_MODES] = {moment[0], moment[1], moment[2]};
+    const double *const weights[LQ_MODES] = {i->weight[0], i->weight[1], i->weight[2]};
+    const size_t count = (size_t)axis->count;
     if (i->count == 0) return;
-    for (size_t mode = 0; mode < LQ_MODES; mode++) {
-        for (int m = 0; m < axis->count; m++) moment[m] = 0.0;
-        lq_node_axis_moments(axis, kernels, i->count, i->cosine, i->weight[mode], moment);
-        for (size_t c = 0; c < (size_t)f->materials; c++) {
-            double *sum = moments_of(f, (int)part, c * LQ_MODES + mode);
-            for (int m = 0; m < axis->count; m++) sum[m] += factor[c] * moment[m];
-        }
+    for (size_t mode = 0; mode < LQ_MODES; mode++) memset(moment[mode], 0, count * sizeof(double));
+    lq_node_axis_moments3(axis, kernels, i->count, i->cosine, weights, moments);
+    for (size_t v = 0; v < variants(f); v++) {
+        double *sum = moments_of(f, (int)part, v);
+        for (size_t m = 0; m < count; m++) sum[m] += factor[v / LQ_MODES] * moment[v % LQ_MODES][m];
     }
 }
 

@@ -196,7 +196,7 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
 }
 
 /* Steps that an interface of more than this roughness makes are as wide as lobes are: nodes resolve them. */
-static const double SHARP_ALPHA = 0.1;
+static const double SHARP_ALPHA = 0.25;
 
 static bool makes_steps(const lq_plan *plan, double rarer) {
     for (size_t i = 0; i < plan->surface_count; i++) {
