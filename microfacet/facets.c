@@ -43,14 +43,16 @@ static void add_horizon_crossings(lq_panels *panels, const view *w) {
     lq_panels_add(panels, 0.5 * (0.5 * pi + w->theta), true); /* psi = 0 */
 }
 
-/* The angle d at which refraction turns light by `turn`: sin(d - turn) = sin d / eta. Negative where there is none. */
+/* The angle d at which refraction turns light by `turn`: sin(d - turn) = sin d / eta. Negative where there is
+ * none. */
 static double refracted_turn(const view *w, double turn) {
     const double side = cos(turn) - 1.0 / w->eta, across = sin(turn);
     const bool turns = w->eta > 1.0 ? across > 0.0 && side > 0.0 : across < 0.0 && side < 0.0;
     return turns ? atan2(fabs(across), fabs(side)) : -1.0;
 }
 
-/* Where the extreme facets send light to a cosine at which its worth is cut: an azimuth begins or ends to divide. */
+/* Where the extreme facets send light to a cosine at which its worth is cut: an azimuth begins or ends to
+ * divide. */
 static void add_cuts(lq_panels *panels, const view *w) {
     for (int i = 0; w->cuts && i < w->cuts->count; i++) {
         const double angle = acos(w->cuts->cosine[i]);
@@ -111,7 +113,8 @@ static int divisions(const view *w, const piece *p, double cos_b, double sin_b, 
     const double reach = sin_b * w->sin_v;
     int count = 0;
     for (int i = 0; w->cuts && i < w->cuts->count && reach != 0.0; i++) {
-        /* Light falls as the azimuth grows where it is turned upwards: the highest cosine comes first then. */
+        /* Light falls as the azimuth grows where it is turned upwards: the highest cosine comes first then.
+         */
         const double cosine = w->cuts->cosine[reach > 0.0 ? w->cuts->count - 1 - i : i];
         const double h = half_chi((cosine - cos_b * w->v_z) / reach, lambda);
         if (h > p->from && h < p->to) at[count++] = h;
@@ -142,7 +145,8 @@ static int piece_nodes(const piece *p, const lq_gauss *rule, double *h, double *
     return rule->count;
 }
 
-/* Quadratic map towards the end of a part where light leaves along a cut, from above: there its worth has a root. */
+/* Quadratic map towards the end of a part where light leaves along a cut, from above: there its worth has a
+ * root. */
 static int part_nodes(double from, double to, bool root_from, const lq_gauss *rule, double *h, double *dh) {
     const double width = to - from;
     for (int i = 0; i < rule->count; i++) {
@@ -153,8 +157,8 @@ static int part_nodes(double from, double to, bool root_from, const lq_gauss *ru
     return rule->count;
 }
 
-/* The parts of a divided piece, as many of them as there is room for; the lowest cosines lie at its end or, where
- * `ascends`, at its start. */
+/* The parts of a divided piece, as many of them as there is room for; the lowest cosines lie at its end or,
+ * where `ascends`, at its start. */
 static int divided_nodes(const view *w, const piece *p, const double *at, int count, bool ascends, double *h,
                          double *dh) {
     int nodes = 0;

@@ -27,8 +27,8 @@ enum { LQ_FAN_MAX = 256, LQ_FACET_CUTS_MAX = 12 };
 typedef struct lq_fan {
     double d, cos_d, sin_d;
     double cos_image, sin_image; /* of the angle between v and the image: 2d, or d - t */
-    int up;    /* facets [0, up) send light away from the surface, ... */
-    int count; /* ... facets [up, count) back towards it */
+    int up;                      /* facets [0, up) send light away from the surface, ... */
+    int count;                   /* ... facets [up, count) back towards it */
     /* Of each facet: |cosine| of the direction it sends light to, z component of e(psi), and its weight
      * (v.m) D(m) dm, not normalised. The cosines of each of the two parts run monotonically. */
     _Alignas(64) double mirror[LQ_FAN_MAX];
@@ -44,8 +44,8 @@ typedef struct lq_facet_rule {
     lq_gauss part;  /* nodes per part of a piece that cosines divide (lq_facet_cuts) */
 } lq_facet_rule;
 
-/* Cosines, ascending, at which what light is worth that leaves the surface is not smooth: azimuth and d are divided
- * where facets send light there. */
+/* Cosines, ascending, at which what light is worth that leaves the surface is not smooth: azimuth and d are
+ * divided where facets send light there. */
 typedef struct lq_facet_cuts {
     int count;
     double cosine[LQ_FACET_CUTS_MAX];

@@ -185,7 +185,8 @@ static void solution_free(solution *x) {
 }
 
 static bool solve(const interface *f, solution *x) {
-    const lq_hits hits = {f->level, 2, {f->sides[0].fall, f->sides[1].fall}, {f->sides[0].rise, f->sides[1].rise}};
+    const lq_hits hits = {
+        f->level, 2, {f->sides[0].fall, f->sides[1].fall}, {f->sides[0].rise, f->sides[1].rise}};
     return lq_hits_solve(&hits, &x->hits, SETTLED);
 }
 

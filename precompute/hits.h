@@ -1,8 +1,8 @@
 /* Light between its hits on a microsurface: the fixed point of travel and meeting facets (dielectric.h).
  *
- * E_s(u, omega) is what a ray of side s at depth u that travels in omega is worth in the end, C_s(u, omega) the
- * same just before it meets a facet. E follows from C by travel, C from E by the rows of the facet operator; the
- * pair is iterated for eight rewards at a time.
+ * E_s(u, omega) is what a ray of side s at depth u that travels in omega is worth in the end, C_s(u, omega)
+ * the same just before it meets a facet. E follows from C by travel, C from E by the rows of the facet
+ * operator; the pair is iterated for eight rewards at a time.
  */
 #ifndef LACQUER_PRECOMPUTE_HITS_H
 #define LACQUER_PRECOMPUTE_HITS_H
@@ -10,9 +10,9 @@
 #include "precompute/kernels.h"
 #include "precompute/rough_level.h"
 
-/* The facet operators of falling and rising rays: rows of 4 nodes, the directions light may be sent to: own side
- * rising, own side falling, other side rising, other side falling. A surface that lets nothing through has one
- * side, and its rows end with zeros. */
+/* The facet operators of falling and rising rays: rows of 4 nodes, the directions light may be sent to: own
+ * side rising, own side falling, other side rising, other side falling. A surface that lets nothing through
+ * has one side, and its rows end with zeros. */
 typedef struct lq_hits {
     const lq_rough_level *level;
     int sides;

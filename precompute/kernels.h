@@ -64,8 +64,8 @@ typedef struct lq_solver_kernels {
     void (*moments)(const lq_cosine_map *map, size_t count, const double *cosine, const double *weight,
                     int count_moments, double *moments);
     /* The same of three weights, weight[k][i], to moments[k]. */
-    void (*moments3)(const lq_cosine_map *map, size_t count, const double *cosine, const double *const *weight,
-                     int count_moments, double *const *moments);
+    void (*moments3)(const lq_cosine_map *map, size_t count, const double *cosine,
+                     const double *const *weight, int count_moments, double *const *moments);
     /* Of the facets of a fan that reflect upwards, the weight that leaves at once: sum w G with
      * G = area_in mu_o / (area_in mu_o + area mu_i), area[i] the facets that block direction i. */
     double (*escaping)(double area_in, double mu_i, size_t count, const double *mu_o, const double *area,

@@ -141,8 +141,8 @@ static inline void moments3_of(int groups, const double *x, const double *w, int
     }
 }
 
-static void moments3(const lq_cosine_map *map, size_t count, const double *cosine, const double *const *weight,
-                     int count_moments, double *const *out) {
+static void moments3(const lq_cosine_map *map, size_t count, const double *cosine,
+                     const double *const *weight, int count_moments, double *const *out) {
     double x[LQ_FACETS_MAX], w[3 * LQ_FACETS_MAX];
     lq_v8 sum[3 * (LQ_NODES_MAX + LQ_LANES)];
     const size_t groups = (count + LQ_LANES - 1) / LQ_LANES;
@@ -150,7 +150,8 @@ static void moments3(const lq_cosine_map *map, size_t count, const double *cosin
     map_cosines(map, count, cosine, x);
     for (size_t i = count; i < groups * LQ_LANES; i++) x[i] = 0.0;
     for (size_t k = 0; k < 3; k++)
-        for (size_t i = 0; i < groups * LQ_LANES; i++) w[k * LQ_FACETS_MAX + i] = i < count ? weight[k][i] : 0.0;
+        for (size_t i = 0; i < groups * LQ_LANES; i++)
+            w[k * LQ_FACETS_MAX + i] = i < count ? weight[k][i] : 0.0;
     memset(sum, 0, (size_t)padded * sizeof sum[0]);
     size_t g = 0;
     for (; g + 4 <= groups; g += 4) moments3_of(4, x + g * LQ_LANES, w + g * LQ_LANES, count_moments, sum);
@@ -159,7 +160,8 @@ static void moments3(const lq_cosine_map *map, size_t count, const double *cosin
     for (int m = 0; m < 3 * count_moments; m += LQ_LANES) {
         double eight[LQ_LANES] = {0.0};
         add_lanes(sum + m, eight);
-        for (int l = 0; l < LQ_LANES && m + l < 3 * count_moments; l++) out[(m + l) % 3][(m + l) / 3] += eight[l];
+        for (int l = 0; l < LQ_LANES && m + l < 3 * count_moments; l++)
+            out[(m + l) % 3][(m + l) / 3] += eight[l];
     }
 }
 
@@ -401,7 +403,7 @@ static void contract(int depths, int nodes, const double *restrict weights, cons
 }
 
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments, moments3, escaping, spread,  assemble, sweep,        survival,
-                                              travel,  meet,     average, contract, read_energies};
+    static const lq_solver_kernels kernels = {moments,  moments3, escaping, spread,  assemble, sweep,
+                                              survival, travel,   meet,     average, contract, read_energies};
     return &kernels;
 }

@@ -101,7 +101,8 @@ static int element_of(const lq_node_axis *axis, double mu) {
     return e;
 }
 
-/* The end of the cosines from `from` on that lie in its element *e: neighbours, since they run monotonically. */
+/* The end of the cosines from `from` on that lie in its element *e: neighbours, since they run monotonically.
+ */
 static size_t end_of_run(const lq_node_axis *axis, size_t count, const double *cosine, size_t from, int *e) {
     *e = element_of(axis, cosine[from]);
     size_t to = axis->elements == 1 ? count : from + 1;

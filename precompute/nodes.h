@@ -4,8 +4,8 @@
  * energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take twice the tangent
  * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
  * An axis can be divided at a cosine where the energy changes abruptly (a critical angle); each element has
- * its own points. The axis of a medium between interfaces has no roughness of its own: its elements run in the
- * root of the distance to their lower end, where refraction and roughness of any scale change fastest.
+ * its own points. The axis of a medium between interfaces has no roughness of its own: its elements run in
+ * the root of the distance to their lower end, where refraction and roughness of any scale change fastest.
  */
 #ifndef LACQUER_PRECOMPUTE_NODES_H
 #define LACQUER_PRECOMPUTE_NODES_H
@@ -32,12 +32,13 @@ typedef struct lq_node_axis {
  * without memory; free it in either case. */
 bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int count, double split);
 
-/* The same, divided at `split_count` cosines, ascending in (0,1), fewer than LQ_ELEMENTS_MAX; `nodes` an element. */
+/* The same, divided at `split_count` cosines, ascending in (0,1), fewer than LQ_ELEMENTS_MAX; `nodes` an
+ * element. */
 bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense, const double *splits,
                                int split_count, int nodes);
 
-/* An axis in roots, divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes` an element,
- * LQ_NODES_MAX in all. False without memory; free it in either case. */
+/* An axis in roots, divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes`
+ * an element, LQ_NODES_MAX in all. False without memory; free it in either case. */
 bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes);
 
 void lq_node_axis_free(lq_node_axis *axis);

@@ -108,8 +108,8 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
     r->travel_up = lq_zeros(n * d * d);
     r->survival = lq_zeros(n * d);
     r->refracted_hits = lq_zeros(ARRIVALS * d * n);
-    const bool axis = lq_node_axis_make_divided(&r->axis, scale, LQ_RISING, splits->at, splits->count,
-                                                l->nodes);
+    const bool axis =
+        lq_node_axis_make_divided(&r->axis, scale, LQ_RISING, splits->at, splits->count, l->nodes);
     if (!axis || !r->travel_down || !r->travel_up || !r->survival || !r->refracted_hits) {
         lq_rough_level_free(r);
         return NULL;

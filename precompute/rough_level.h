@@ -44,10 +44,10 @@ typedef struct lq_level_splits {
     double at[LQ_ELEMENTS_MAX];
 } lq_level_splits;
 
-/* A level of one's own, for an interface of relative index eta either way; its nodes are those of one element of
- * the axis. It has no leaving nodes. NULL without memory. */
-lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *resolution,
-                                    const lq_level_splits *splits);
+/* A level of one's own, for an interface of relative index eta either way; its nodes are those of one element
+ * of the axis. It has no leaving nodes. NULL without memory. */
+lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta,
+                                    const lq_resolution *resolution, const lq_level_splits *splits);
 void lq_rough_level_free(lq_rough_level *level); /* NULL: nothing */
 
 /* Made when first asked for, and kept in `rough`; NULL without memory. */

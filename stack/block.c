@@ -55,8 +55,8 @@ void lq_matrix_product(const double *a, const double *b, size_t rows, size_t inn
         }
 }
 
-/* Light that total reflection traps between lossless smooth interfaces stays for ever, and nothing lets it in:
- * its equation is 0 x = 0. So little loss at a bounce makes that 0. */
+/* Light that total reflection traps between lossless smooth interfaces stays for ever, and nothing lets it
+ * in: its equation is 0 x = 0. So little loss at a bounce makes that 0. */
 static const double TRAP_LOSS = 1e-15;
 
 lq_status lq_block_trapped(double *m, size_t size, double *x, size_t count, lq_error *error) {
@@ -111,7 +111,8 @@ static lq_status held(const lq_block *from, int f, const lq_block *to, const dou
 /* The half of the sum that light on side s of it enters by. */
 static lq_status add_half(const lq_block *near, int s, const lq_block *far, const double *crossing,
                           lq_block *sum, lq_error *error) {
-    const size_t rows = near->entries[s], n = near->nodes[1 - s], back = near->nodes[s], on = far->nodes[1 - s];
+    const size_t rows = near->entries[s], n = near->nodes[1 - s], back = near->nodes[s],
+                 on = far->nodes[1 - s];
     double *value = NULL;
     if (rows == 0) return LQ_OK;
     const lq_status status = held(near, 1 - s, far, crossing, &value, error);

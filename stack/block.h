@@ -1,8 +1,8 @@
 /* block.h - adding and doubling on operators: B18 sec. 5.1, eq. 28-31, with matrices for numbers.
  *
- * A block is what one interface, or a pile of them, does to rewards: the value of light that arrives on side s
- * (0 above, 1 below) at each of its entries is r[s] times the reward of leaving that side at its nodes, plus t[s]
- * times that of leaving the other. Matrices are row-major.
+ * A block is what one interface, or a pile of them, does to rewards: the value of light that arrives on side
+ * s (0 above, 1 below) at each of its entries is r[s] times the reward of leaving that side at its nodes,
+ * plus t[s] times that of leaving the other. Matrices are row-major.
  */
 #ifndef LACQUER_STACK_BLOCK_H
 #define LACQUER_STACK_BLOCK_H
@@ -30,8 +30,8 @@ typedef struct lq_block_rows {
 /* LQ_NO_MEMORY; free `part` in either case. */
 lq_status lq_block_part(const lq_block *all, const lq_block_rows *rows, lq_block *part, lq_error *error);
 
-/* `above` over `below`, with a medium between: `crossing` holds what a crossing leaves at each node. The entries
- * of the two that face the medium are its nodes. LQ_NO_MEMORY. */
+/* `above` over `below`, with a medium between: `crossing` holds what a crossing leaves at each node. The
+ * entries of the two that face the medium are its nodes. LQ_NO_MEMORY. */
 lq_status lq_block_add(const lq_block *above, const double *crossing, const lq_block *below, lq_block *sum,
                        lq_error *error);
 
@@ -40,11 +40,12 @@ lq_status lq_block_add(const lq_block *above, const double *crossing, const lq_b
 lq_status lq_block_repeat(const lq_block *block, const double *crossing, size_t count, lq_block *sum,
                           lq_error *error);
 
-/* Light between two mirrors: columns of x (size x count) are replaced by the solutions y of y = m y + x. m, which
- * gains no energy, is overwritten. LQ_NO_MEMORY; LQ_NOT_CONVERGED: there is none. */
+/* Light between two mirrors: columns of x (size x count) are replaced by the solutions y of y = m y + x. m,
+ * which gains no energy, is overwritten. LQ_NO_MEMORY; LQ_NOT_CONVERGED: there is none. */
 lq_status lq_block_trapped(double *m, size_t size, double *x, size_t count, lq_error *error);
 
 /* c = a b; a is rows x inner, b inner x columns. */
-void lq_matrix_product(const double *a, const double *b, size_t rows, size_t inner, size_t columns, double *c);
+void lq_matrix_product(const double *a, const double *b, size_t rows, size_t inner, size_t columns,
+                       double *c);
 
 #endif

@@ -40,7 +40,8 @@ static void add(lq_facet_sums *f, lq_facet_part part, const lq_node_axis *axis, 
     }
 }
 
-/* Facets `from` to `to` of a fan. `sign`: reflected light leaves to the image of v, refracted light against it. */
+/* Facets `from` to `to` of a fan. `sign`: reflected light leaves to the image of v, refracted light against
+ * it. */
 static void images_make(images *i, const lq_facet_sums *f, const lq_fan *fan, int from, int to, double sign) {
     const double along = fan->cos_image * f->sine, across = fan->sin_image * f->v_z / f->sine;
     i->count = (size_t)(to - from);
@@ -127,7 +128,7 @@ void lq_facet_sums_free(lq_facet_sums *f) {
 }
 
 void lq_facet_sums_project(const lq_facet_sums *f, int part, size_t variant, double *weights) {
-    const lq_node_axis *axis = part == LQ_PART_ESCAPES ? f->leaving[0]
+    const lq_node_axis *axis = part == LQ_PART_ESCAPES  ? f->leaving[0]
                                : part == LQ_PART_PASSES ? f->leaving[1]
                                                         : f->nodes;
     const double scale = lq_inverse_area(f->total);

@@ -1,4 +1,5 @@
-/* facet_sums.h - where the facets that one direction sees send light, in all modes: moments on cosine axes. */
+/* facet_sums.h - where the facets that one direction sees send light, in all modes: moments on cosine axes.
+ */
 #ifndef LACQUER_STACK_FACET_SUMS_H
 #define LACQUER_STACK_FACET_SUMS_H
 
@@ -6,8 +7,8 @@
 #include "precompute/nodes.h"
 #include "stack/modes.h"
 
-/* Parts of the light, by where they go after the hit. What rises on either side is summed twice: on the axis of
- * the medium, for what leaves, and on the nodes of the level, for what hits again. */
+/* Parts of the light, by where they go after the hit. What rises on either side is summed twice: on the axis
+ * of the medium, for what leaves, and on the nodes of the level, for what hits again. */
 typedef enum lq_facet_part {
     LQ_PART_ESCAPES, /* reflected, away from the surface: on the axis leaving[0] */
     LQ_PART_PASSES,  /* refracted likewise: on leaving[1] */

@@ -17,12 +17,12 @@ typedef struct solving {
     const lq_plan *plan;
     const lq_stack_query *query;
     int level;
-    lq_node_axis *axis;        /* of the plan's */
-    lq_surface_work **work;    /* of the plan's surfaces, while they are solved */
-    double **entry;            /* cosines of both sides of each surface: [2 * surface + side] */
+    lq_node_axis *axis;     /* of the plan's */
+    lq_surface_work **work; /* of the plan's surfaces, while they are solved */
+    double **entry;         /* cosines of both sides of each surface: [2 * surface + side] */
     lq_block (*block)[LQ_STACK_CHANNELS][LQ_MODES]; /* of each surface and material */
-    size_t *first;             /* rows, or batches, of the surfaces before: surfaces + 1 */
-    size_t from, to;           /* surfaces that are solved together */
+    size_t *first;   /* rows, or batches, of the surfaces before: surfaces + 1 */
+    size_t from, to; /* surfaces that are solved together */
     lq_stack_light *light;
 } solving;
 
@@ -140,10 +140,10 @@ static lq_status step_block(const solving *s, const lq_plan_step *step, bool fir
     const lq_block *all = &s->block[step->surface][step->material][mode];
     const int front = step->flipped ? 1 : 0;
     const size_t inside = inside_count(s, surface, front);
-    const lq_block_rows rows = {.flipped = step->flipped,
-                                .from = {first ? inside : 0, 0},
-                                .count = {first ? s->query->mu_count : inside,
-                                          inside_count(s, surface, 1 - front)}};
+    const lq_block_rows rows = {
+        .flipped = step->flipped,
+        .from = {first ? inside : 0, 0},
+        .count = {first ? s->query->mu_count : inside, inside_count(s, surface, 1 - front)}};
     return lq_block_part(all, &rows, block, error);
 }
 
@@ -204,7 +204,8 @@ static lq_status solve_channel(const solving *s, int channel, lq_error *error) {
     const lq_node_axis *beyond = &s->axis[chain->medium[chain->steps].axis];
     flux *sums = calloc(2 * paths * count + 1, sizeof *sums);
     double *values = malloc((4 * paths * count + 1) * sizeof *values);
-    lq_status status = sums && values ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
+    lq_status status =
+        sums && values ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
     for (int mode = 0; mode < LQ_MODES && status == LQ_OK; mode++) {
         lq_pile pile;
         double reward[2][2 * LQ_NODES_MAX];

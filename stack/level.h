@@ -4,8 +4,8 @@
 
 #include "stack/plan.h"
 
-/* What is asked of every channel: light as in lq_stack_solve, its errors left alone. LQ_NOT_CONVERGED: this level
- * is too fine for some interface. */
+/* What is asked of every channel: light as in lq_stack_solve, its errors left alone. LQ_NOT_CONVERGED: this
+ * level is too fine for some interface. */
 lq_status lq_stack_level(const lq_plan *plan, const lq_stack_query *query, int level, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error);
 

@@ -36,7 +36,8 @@ static bool same_medium(const lq_plan_chain *c, size_t a, size_t b) {
     return c->medium[a].axis == c->medium[b].axis && c->medium[a].tau == c->medium[b].tau;
 }
 
-/* Steps from `from` on that repeat with this period, all of them counted: the medium below the last is free. */
+/* Steps from `from` on that repeat with this period, all of them counted: the medium below the last is free.
+ */
 static size_t repeated(const lq_plan_chain *c, size_t from, size_t period) {
     size_t i = from + period;
     while (i < c->steps && same_step(c, i - period, i) && (i == from || same_medium(c, i - period, i))) i++;
@@ -144,8 +145,8 @@ static void rewarded(const double *matrix, size_t rows, size_t nodes, const doub
         }
 }
 
-/* value = M value, or with `all` the sum of M^k value, M = below r21: one more reflection off the first step from
- * below, or any number of them. */
+/* value = M value, or with `all` the sum of M^k value, M = below r21: one more reflection off the first step
+ * from below, or any number of them. */
 static lq_status reflect(walk *w, bool all, lq_error *error) {
     const size_t n = w->nodes;
     double *m = malloc(n * n * sizeof *m);
@@ -168,7 +169,8 @@ static void start(walk *w, const lq_block *rest, const double *crossing, const d
     const lq_block *top = &w->pile->block[0];
     const size_t n = w->nodes;
     for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) w->below[i * n + j] = crossing[i] * rest->r[0][i * n + j] * crossing[j];
+        for (size_t j = 0; j < n; j++)
+            w->below[i * n + j] = crossing[i] * rest->r[0][i * n + j] * crossing[j];
     rewarded(top->t[1], n, top->nodes[0], reward, 0, COLUMNS, w->next);
     lq_matrix_product(w->below, w->next, n, n, COLUMNS, w->value);
     rewarded(rest->t[0], n, rest->nodes[1], reward_beyond, 2, COLUMNS, w->value);
@@ -185,8 +187,7 @@ static lq_status split(walk *w, lq_error *error) {
         const bool last = p + 1 == w->paths;
         if (last) status = reflect(w, true, error);
         for (size_t side = 0; side < 2 && status == LQ_OK; side++) {
-            for (size_t i = 0; i < n * COLUMNS; i++)
-                masked[i] = i % COLUMNS / 2 == side ? w->value[i] : 0.0;
+            for (size_t i = 0; i < n * COLUMNS; i++) masked[i] = i % COLUMNS / 2 == side ? w->value[i] : 0.0;
             enter(w, side == 0 && !last ? p + 1 : p, masked);
         }
         if (!last) status = reflect(w, false, error);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "microfacet/fresnel.h"
 #include "stack/description.h"
 #include "system/status.h"
 
@@ -15,7 +16,8 @@
 static const char *unsolved(const lq_layer *layer) {
     for (int i = 0; i < LQ_PARAMETERS; i++)
         if ((lq_parameters[i].layers >> layer->type & 1) &&
-            ((const lq_quantity *)(const void *)((const char *)layer + lq_parameters[i].offset))->form == LQ_RANGE)
+            ((const lq_quantity *)(const void *)((const char *)layer + lq_parameters[i].offset))->form ==
+                LQ_RANGE)
             return "has a range; accepted: a number or [r, g, b]";
     if (layer->anisotropic) return "is anisotropic; accepted: one alpha";
     if (layer->type == LQ_LAYER_DIELECTRIC && lq_medium_scatters(&layer->medium))
@@ -30,8 +32,10 @@ static lq_status check(const lq_stack *stack, bool from_below, lq_error *error) 
     }
     const lq_layer_type last = stack->layers[stack->layer_count - 1].type;
     if (from_below && last != LQ_LAYER_DIELECTRIC)
-        return lq_fail(error, LQ_BAD_INPUT, "light from below a %s base; accepted: a stack that ends with a "
-                                            "dielectric", lq_layer_type_name(last));
+        return lq_fail(error, LQ_BAD_INPUT,
+                       "light from below a %s base; accepted: a stack that ends with a "
+                       "dielectric",
+                       lq_layer_type_name(last));
     return LQ_OK;
 }
 
@@ -48,7 +52,8 @@ int lq_stack_channels(const lq_stack *stack) {
  *                                       One of each
  * ====================================================================================== */
 
-static lq_status open_ndf(lq_plan *plan, const char *text, double alpha, const lq_ndf **ndf, lq_error *error) {
+static lq_status open_ndf(lq_plan *plan, const char *text, double alpha, const lq_ndf **ndf,
+                          lq_error *error) {
     const lq_ndf *opened = NULL;
     *ndf = NULL;
     lq_status status = lq_ndf_open(&opened, text, error);
@@ -97,29 +102,42 @@ static lq_plan_step find_surface(lq_plan *plan, const lq_plan_surface *surface) 
  *                                        Media
  * ====================================================================================== */
 
-static int ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Cuts closer than this to each other or to an end of the axis are one. */
 static const double CUTS_APART = 1e-6;
 
-/* The axis of a medium of index n among those of indices `all`, ascending: cut where light is totally reflected
- * towards each rarer one. */
+/* Put a cut in its place. `rarer`: the index that light is totally reflected towards. */
+static void add_cut(lq_plan_axis *axis, double cosine, double rarer) {
+    int i = 0;
+    if (!(cosine > CUTS_APART && cosine < 1.0 - CUTS_APART) || axis->cut_count + 1 == LQ_ELEMENTS_MAX) return;
+    while (i < axis->cut_count && axis->cut[i] < cosine) i++;
+    if (i < axis->cut_count && axis->cut[i] - cosine < CUTS_APART) return;
+    if (i > 0 && cosine - axis->cut[i - 1] < CUTS_APART) return;
+    for (int k = axis->cut_count++; k > i; k--) {
+        axis->cut[k] = axis->cut[k - 1];
+        axis->rarer[k] = axis->rarer[k - 1];
+    }
+    axis->cut[i] = cosine;
+    axis->rarer[i] = rarer;
+}
+
+/* The axis of a medium of index n among those of indices `all`: cut where light is totally reflected towards
+ * each rarer one. */
 static lq_plan_axis axis_of(double n, const double *all, size_t count) {
     lq_plan_axis axis;
     memset(&axis, 0, sizeof axis); /* compared as bytes */
     axis.n = n;
-    for (size_t i = count; i-- > 0;) { /* the nearest index first: ascending cosines */
-        const double ratio = all[i] / n, cosine = ratio < 1.0 ? sqrt((1.0 - ratio) * (1.0 + ratio)) : 0.0;
-        const double before = axis.cut_count ? axis.cut[axis.cut_count - 1] : 0.0;
-        if (cosine > before + CUTS_APART && cosine < 1.0 - CUTS_APART && axis.cut_count + 1 < LQ_ELEMENTS_MAX) {
-            axis.rarer[axis.cut_count] = all[i];
-            axis.cut[axis.cut_count++] = cosine;
-        }
-    }
+    for (size_t i = 0; i < count; i++)
+        if (all[i] < n) add_cut(&axis, sqrt((1.0 - all[i] / n) * (1.0 + all[i] / n)), all[i]);
     return axis;
+}
+
+/* A conductor whose index is below that of the medium turns reflective at an angle too, the more sharply the
+ * less it absorbs. */
+static void add_conductor_cut(lq_plan_axis *axis, double n, double kappa) {
+    lq_fresnel_singularity found[2];
+    if (n >= axis->n) return;
+    lq_fresnel_singularities(n / axis->n, kappa / axis->n, found);
+    if (found[0].distance < 0.15) add_cut(axis, cos(found[0].angle), n);
 }
 
 static double value_of(const lq_quantity *q, int channel) {
@@ -131,8 +149,7 @@ static size_t media_of(const lq_stack *stack, int channel, double *n) {
     size_t count = 1;
     n[0] = 1.0;
     for (size_t i = 0; i < stack->layer_count; i++)
-        if (stack->layers[i].type == LQ_LAYER_DIELECTRIC)
-            n[count++] = value_of(&stack->layers[i].n, channel);
+        if (stack->layers[i].type == LQ_LAYER_DIELECTRIC) n[count++] = value_of(&stack->layers[i].n, channel);
     return count;
 }
 
@@ -198,12 +215,16 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
 /* Steps that an interface of more than this roughness makes are as wide as lobes are: nodes resolve them. */
 static const double SHARP_ALPHA = 0.25;
 
+static bool is_at(const lq_plan *plan, const lq_plan_surface *s, double index) {
+    for (int m = 0; s->spec.opaque && m < s->spec.materials; m++)
+        if (fabs(s->spec.n[m] * plan->axis[s->axis[0]].n - index) <= 1e-12 * index) return true;
+    return !s->spec.opaque && (plan->axis[s->axis[0]].n == index || plan->axis[s->axis[1]].n == index);
+}
+
 static bool makes_steps(const lq_plan *plan, double rarer) {
     for (size_t i = 0; i < plan->surface_count; i++) {
         const lq_plan_surface *s = &plan->surface[i];
-        if (!s->spec.opaque && s->spec.alpha < SHARP_ALPHA &&
-            (plan->axis[s->axis[0]].n == rarer || plan->axis[s->axis[1]].n == rarer))
-            return true;
+        if (!s->spec.diffuse && s->spec.alpha < SHARP_ALPHA && is_at(plan, s, rarer)) return true;
     }
     return false;
 }
@@ -220,7 +241,7 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
                             lq_scattering scattering, lq_error *error) {
     lq_plan_chain *chain = &plan->chain[channel];
     const size_t layers = stack->layer_count;
-    double *n = malloc(2 * (layers + 1) * sizeof *n);
+    double *n = malloc((layers + 1) * sizeof *n);
     chain->step = calloc(layers, sizeof *chain->step);
     chain->medium = calloc(layers + 1, sizeof *chain->medium);
     lq_status status = LQ_OK;
@@ -229,13 +250,13 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
         return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", layers);
     }
     const size_t media = media_of(stack, channel, n);
-    double *sorted = memcpy(n + layers + 1, n, media * sizeof *n);
-    qsort(sorted, media, sizeof *sorted, ascending);
+    const lq_layer *base = &stack->layers[layers - 1];
     for (size_t i = 0; i < media; i++) {
-        const lq_plan_axis axis = axis_of(n[i], sorted, media);
+        lq_plan_axis axis = axis_of(n[i], n, media);
+        if (i + 1 == media && base->type == LQ_LAYER_CONDUCTOR)
+            add_conductor_cut(&axis, value_of(&base->n, channel), value_of(&base->kappa, channel));
         chain->medium[i].axis = find_axis(plan, &axis);
-        chain->medium[i].tau =
-            i == 0 ? 1.0 : lq_medium_transmittance(&stack->layers[i - 1].medium, channel);
+        chain->medium[i].tau = i == 0 ? 1.0 : lq_medium_transmittance(&stack->layers[i - 1].medium, channel);
     }
     for (size_t i = 0; i < layers && status == LQ_OK; i++)
         status = add_step(plan, chain, &stack->layers[i], channel, scattering, error);

@@ -1,7 +1,8 @@
 /* plan.h - a stack as light meets it: distinct surfaces, the media between them, and the order of both.
  *
- * Interfaces that are alike are solved once, whichever way up they lie and however many channels have them: every
- * medium of one index has one cosine axis, cut at the critical angles towards all rarer media of the stack.
+ * Interfaces that are alike are solved once, whichever way up they lie and however many channels have them:
+ * every medium of one index has one cosine axis, cut at the critical angles towards all rarer media of the
+ * stack.
  */
 #ifndef LACQUER_STACK_PLAN_H
 #define LACQUER_STACK_PLAN_H
@@ -15,7 +16,7 @@ typedef struct lq_plan_axis {
     int cut_count;
     double cut[LQ_ELEMENTS_MAX];
     double rarer[LQ_ELEMENTS_MAX]; /* index of the medium that light is totally reflected towards */
-    lq_facet_cuts sharp; /* the cuts that smooth or nearly smooth interfaces make */
+    lq_facet_cuts sharp;           /* the cuts that smooth or nearly smooth interfaces make */
 } lq_plan_axis;
 
 typedef struct lq_plan_surface {

@@ -20,8 +20,8 @@ static double difference(const lq_stack_lobe *a, const lq_stack_lobe *b) {
     return fmax(fmax(energy, sin2), fmax(fabs(a->mean - b->mean), fabs(a->across - b->across)));
 }
 
-/* Every level is at least 2.5 times as good as the one before, so that twice of what has changed covers what is
- * left. An estimate is never below a tenth of the tolerance: two levels can agree by accident. */
+/* Every level is at least 2.5 times as good as the one before, so that twice of what has changed covers what
+ * is left. An estimate is never below a tenth of the tolerance: two levels can agree by accident. */
 static const double CAUTION = 2.0, LEAST = 0.1;
 
 static double estimate_of(const lq_stack_light *now, const lq_stack_light *before, double tolerance) {
@@ -30,8 +30,8 @@ static double estimate_of(const lq_stack_light *now, const lq_stack_light *befor
     return fmax(CAUTION * change, LEAST * tolerance);
 }
 
-/* Raise the level until all estimates hold; a level that does not settle is left out. `now` has room for `count`
- * lights. */
+/* Raise the level until all estimates hold; a level that does not settle is left out. `now` has room for
+ * `count` lights. */
 static lq_status refine(const lq_plan *plan, const lq_stack_query *query, double tolerance,
                         lq_stack_light *light, lq_stack_light *now, size_t count, const lq_progress *progress,
                         lq_error *error) {
@@ -49,7 +49,8 @@ static lq_status refine(const lq_plan *plan, const lq_stack_query *query, double
     if (status != LQ_OK && status != LQ_NOT_CONVERGED) return status;
     for (size_t i = 0; i < count; i++) worst = fmax(worst, light[i].error);
     if (worst <= tolerance) return LQ_OK;
-    return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g", worst, tolerance);
+    return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance %.2g", worst,
+                   tolerance);
 }
 
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,

@@ -12,10 +12,10 @@
 #include "stack/facet_sums.h"
 #include "system/status.h"
 
-/* What is kept of one direction of arrival, [material][mode] of each: light that leaves at once, on the axes of
- * both media; what stays of the light that rises on its own side, what falls there, and what falls on the other
- * side, on the nodes of the level; and what stays of the light that rises on the other side, where it meets its
- * second facet: [mode][depth * nodes + j]. */
+/* What is kept of one direction of arrival, [material][mode] of each: light that leaves at once, on the axes
+ * of both media; what stays of the light that rises on its own side, what falls there, and what falls on the
+ * other side, on the nodes of the level; and what stays of the light that rises on the other side, where it
+ * meets its second facet: [mode][depth * nodes + j]. */
 typedef struct entry_rows {
     double *arrival; /* [depths]: where the first facet is met, and the next */
     double *leaving, *staying, *refracted;
@@ -30,8 +30,8 @@ struct lq_surface_work {
     lq_panels kinks[2];
     double *memory;
     double *fall[2], *rise[2]; /* [(material * LQ_MODES + mode) * nodes + i][4 nodes] */
-    /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling i]
-     * [columns]; and how much of it leaves from depth k, [k * axis + a]. */
+    /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling
+     * i] [columns]; and how much of it leaves from depth k, [k * axis + a]. */
     double *out[2], *survival[2];
     entry_rows entry[2];
 };
@@ -52,7 +52,8 @@ static size_t variants(const lq_surface_work *w) {
     return (size_t)w->spec.materials * LQ_MODES;
 }
 
-/* Doubles that an array of `count` takes from the memory at *at; NULL stands for memory that is only counted. */
+/* Doubles that an array of `count` takes from the memory at *at; NULL stands for memory that is only counted.
+ */
 static double *take(double *memory, size_t *at, size_t count) {
     double *taken = memory ? memory + *at : NULL;
     *at += (count + LQ_LANES - 1) / LQ_LANES * LQ_LANES;
@@ -96,13 +97,16 @@ static void make_kinks(lq_surface_work *w) {
     }
 }
 
-/* Nodes and their quadrature are what limits the accuracy, depths are not (measured on the stacks of the tests). */
-static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
-    {16, 12, 10, 16}, {24, 12, 16, 20}, {32, 16, 20, 28}, {48, 20, 32, 40}, {64, 24, 40, 48}, {96, 32, 56, 64}};
+/* Nodes and their quadrature are what limits the accuracy, depths are not (measured on the stacks of the
+ * tests). */
+static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {{16, 12, 10, 16}, {24, 12, 16, 20},
+                                                             {32, 16, 20, 28}, {48, 20, 32, 40},
+                                                             {64, 24, 40, 48}, {96, 32, 56, 64}};
 
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
-/* Splits closer than this to each other or to an end are left out: their element would have nodes for nothing. */
+/* Splits closer than this to each other or to an end are left out: their element would have nodes for
+ * nothing. */
 static const double SPLITS_APART = 0.02;
 
 static void add_split(lq_level_splits *splits, double at) {
@@ -115,10 +119,10 @@ static void add_split(lq_level_splits *splits, double at) {
     splits->at[i] = at;
 }
 
-/* Where the node axis is divided: where other interfaces make steps, and in the denser medium, where what falls on
- * the facets turns at the critical angle, cos = sqrt(1 - eta^2), within a width alpha, and what rises meets no facet
- * below that angle from cos = eta on, where the cone touches the horizon. Divided there, 20 nodes do what 32 to 48
- * do undivided. */
+/* Where the node axis is divided: where other interfaces make steps, and in the denser medium, where what
+ * falls on the facets turns at the critical angle, cos = sqrt(1 - eta^2), within a width alpha, and what
+ * rises meets no facet below that angle from cos = eta on, where the cone touches the horizon. Divided there,
+ * 20 nodes do what 32 to 48 do undivided. */
 static lq_level_splits splits_of(const lq_surface *s) {
     const double eta = fmin(s->eta, 1.0 / s->eta);
     lq_level_splits splits = {0};
@@ -191,7 +195,9 @@ static lq_facet_sums sums_of(const lq_surface_work *w, int side, double v_z) {
     const lq_surface *s = &w->spec;
     return (lq_facet_sums){.ndf = s->ndf,
                            .alpha = s->alpha,
-                           .eta = s->opaque ? 0.0 : side == 0 ? s->eta : 1.0 / s->eta,
+                           .eta = s->opaque   ? 0.0
+                                  : side == 0 ? s->eta
+                                              : 1.0 / s->eta,
                            .materials = s->materials,
                            .n = s->n,
                            .kappa = s->kappa,
@@ -228,8 +234,9 @@ static double total_of(const double *values, size_t count) {
     return sum;
 }
 
-/* Light refracted at the first facet: what leaves at once, masked at the nodes of the axis, and where the rest
- * meets its next facet. The nodes' own masking sums to something else; it is scaled to what the axis leaves. */
+/* Light refracted at the first facet: what leaves at once, masked at the nodes of the axis, and where the
+ * rest meets its next facet. The nodes' own masking sums to something else; it is scaled to what the axis
+ * leaves. */
 static lq_status refracted_rows(lq_surface_work *w, int side, size_t row, double lambda_i,
                                 const lq_facet_sums *f, lq_error *error) {
     const lq_surface *s = &w->spec;
@@ -345,7 +352,8 @@ static void read_batch(lq_surface_work *w, size_t v, size_t first, const lq_hits
         }
 }
 
-/* What a hit at each depth and node of both sides sends out at once, for the reward of 1 at one node of an axis. */
+/* What a hit at each depth and node of both sides sends out at once, for the reward of 1 at one node of an
+ * axis. */
 static void load_source(const lq_surface_work *w, size_t v, size_t column, size_t lane, lq_v8 *source) {
     const size_t n = (size_t)w->nodes, depths = (size_t)w->depths, above = axis_count(&w->spec, 0);
     const int paid = column >= above;
@@ -394,8 +402,8 @@ lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
  *                                        Blocks
  * ====================================================================================== */
 
-/* What the worths of a dielectric's row are scaled by, so that with the light that leaves at once they count all
- * of it. */
+/* What the worths of a dielectric's row are scaled by, so that with the light that leaves at once they count
+ * all of it. */
 static double worth_scale(const lq_surface_work *w, int side, size_t row, int material) {
     const size_t v = (size_t)material * LQ_MODES, at = row * variants(w) + v;
     if (w->sides == 1 || w->spec.scattering == LQ_SINGLE) return 1.0;
@@ -405,8 +413,10 @@ static double worth_scale(const lq_surface_work *w, int side, size_t row, int ma
 }
 
 /* One row of a block: what leaves at once, and what the rest is worth. */
-static void fill_row(const lq_surface_work *w, int side, size_t row, size_t v, double scale, lq_block *block) {
-    const size_t at = row * variants(w) + v, own = axis_count(&w->spec, side), above = axis_count(&w->spec, 0);
+static void fill_row(const lq_surface_work *w, int side, size_t row, size_t v, double scale,
+                     lq_block *block) {
+    const size_t at = row * variants(w) + v, own = axis_count(&w->spec, side),
+                 above = axis_count(&w->spec, 0);
     const double *leaving = w->entry[side].leaving + at * leaving_size(w);
     const double *worth = w->entry[side].worth + at * w->columns;
     for (int way = 0; way < w->sides; way++) {

@@ -1,11 +1,11 @@
 /* surface.h - what one rough interface does to any reward: its block, mode by mode.
  *
- * The two-sided solver (precompute/dielectric.h) answers for one reward at a time. Here all rewards are asked at
- * once, as functions on the cosine axes of the two media: light that leaves at its first hit goes straight onto
- * these axes, facet by facet, with the masking of each; what hits again is worth what the fixed point of
+ * The two-sided solver (precompute/dielectric.h) answers for one reward at a time. Here all rewards are asked
+ * at once, as functions on the cosine axes of the two media: light that leaves at its first hit goes straight
+ * onto these axes, facet by facet, with the masking of each; what hits again is worth what the fixed point of
  * precompute/hits.h says, solved for a reward of 1 at each of its own rising nodes. In modes 1 and 2 a facet
- * weighs with the harmonic of the azimuth it turns light by; travel between hits is the same, since nothing but
- * a facet changes a direction.
+ * weighs with the harmonic of the azimuth it turns light by; travel between hits is the same, since nothing
+ * but a facet changes a direction.
  *
  * In mode 0 the rows of a dielectric add up to 1 at any resolution: a lossless stack is exact.
  */
@@ -28,16 +28,16 @@ typedef struct lq_surface {
     int materials;            /* blocks there are: 1, or bases that differ in the material alone */
     double n[LQ_STACK_CHANNELS], kappa[LQ_STACK_CHANNELS]; /* conductors: relative to side 0 */
     double rho[LQ_STACK_CHANNELS];
-    const lq_node_axis *axis[2];                           /* of the media on both sides */
+    const lq_node_axis *axis[2]; /* of the media on both sides */
     lq_facet_cuts sharp[2]; /* cosines of the axes at which interfaces, smooth or nearly so, make steps */
-    const double *entry[2];                                /* cosines at which light arrives */
+    const double *entry[2]; /* cosines at which light arrives */
     size_t entry_count[2];
 } lq_surface;
 
 enum { LQ_SURFACE_LEVELS = 6 };
 
-/* One surface at one level of resolution. Its rows may be filled in any order and by any thread, then its batches
- * be solved likewise; then blocks can be had. A smooth surface has neither rows nor batches. */
+/* One surface at one level of resolution. Its rows may be filled in any order and by any thread, then its
+ * batches be solved likewise; then blocks can be had. A smooth surface has neither rows nor batches. */
 typedef struct lq_surface_work lq_surface_work;
 
 lq_status lq_surface_begin(lq_surface_work **work, const lq_surface *surface, int level, lq_error *error);

@@ -62,8 +62,8 @@ static void print_text_lobe(const lq_stack_lobe *lobe) {
 void stack_print_text(const stack_result *r) {
     const bool opaque = r->stack->layers[r->stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
     const bool rgb = r->channels > 1, paths = r->query->paths;
-    printf("%-8s%s%s  %9s %8s %8s %8s", "mu", rgb ? " channel" : "", paths ? " path" : "", "reflected", "sin2",
-           "mean", "across");
+    printf("%-8s%s%s  %9s %8s %8s %8s", "mu", rgb ? " channel" : "", paths ? " path" : "", "reflected",
+           "sin2", "mean", "across");
     if (!opaque) printf("  %9s %8s %8s %8s", "transm.", "sin2", "mean", "across");
     printf("  %7s\n", "error");
     for (size_t m = 0; m < r->query->mu_count; m++)
@@ -107,7 +107,8 @@ int stack_print_json(const stack_result *r) {
     json_t *root = json_pack("{s:s, s:s, s:s, s:o}", "stack", r->stack->name, "from",
                              r->query->from_below ? "below" : "above", "interfaces",
                              r->query->interfaces == LQ_SINGLE ? "single" : "all", "light", rows);
-    char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12)) : NULL;
+    char *text =
+        root ? json_dumps(root, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12)) : NULL;
     json_decref(root);
     if (!text) return cli_fail("out of memory");
     puts(text);

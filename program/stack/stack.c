@@ -10,7 +10,15 @@
 #include "program/settings.h"
 #include "program/verb.h"
 
-enum { OPTION_MU = 256, OPTION_FORMAT, OPTION_INTERFACES, OPTION_PATHS, OPTION_FROM, OPTION_TOLERANCE, OPTION_TRUST };
+enum {
+    OPTION_MU = 256,
+    OPTION_FORMAT,
+    OPTION_INTERFACES,
+    OPTION_PATHS,
+    OPTION_FROM,
+    OPTION_TOLERANCE,
+    OPTION_TRUST
+};
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 enum { MAX_PATHS = 64 };
 
@@ -52,7 +60,8 @@ static bool read_cosines(void *field, const char *value) {
 }
 
 static const cli_option options[] = {
-    {OPTION_MU, "mu", "MU,...", "cosines of incidence, in the medium the light comes from (default 1,0.6,0.15)",
+    {OPTION_MU, "mu", "MU,...",
+     "cosines of incidence, in the medium the light comes from (default 1,0.6,0.15)",
      CLI_READ(stack_request, cosines, read_cosines)},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
@@ -128,13 +137,14 @@ static int run(int argc, char **argv) {
 }
 
 static void print_notes(FILE *out) {
-    fprintf(out,
-            "Prints, for each cosine and channel, the flux fractions `reflected` and `transmitted`, and of the\n"
-            "light that leaves on either side sin2 = E[sin^2 theta], mean = E[sin theta cos phi] (positive away\n"
-            "from the light) and across = E[sin^2 theta sin^2 phi]. `error` is an estimate for every number of\n"
-            "its line, never meant to be too small. CSV leaves a field empty where there is no such light.\n"
-            "FILE.json describes layers from the top; see docs/stacks.md.\n"
-            "Exit 2: printed, but some estimate is above the tolerance.\n\n");
+    fprintf(
+        out,
+        "Prints, for each cosine and channel, the flux fractions `reflected` and `transmitted`, and of the\n"
+        "light that leaves on either side sin2 = E[sin^2 theta], mean = E[sin theta cos phi] (positive away\n"
+        "from the light) and across = E[sin^2 theta sin^2 phi]. `error` is an estimate for every number of\n"
+        "its line, never meant to be too small. CSV leaves a field empty where there is no such light.\n"
+        "FILE.json describes layers from the top; see docs/stacks.md.\n"
+        "Exit 2: printed, but some estimate is above the tolerance.\n\n");
 }
 
 const cli_verb cli_verb_stack = {
