@@ -616,11 +616,11 @@ typedef struct lq_stack_light {
 typedef struct lq_stack_query {
     const double *mu; /* cosines of incidence, in the medium the light comes from */
     size_t mu_count;
-    bool from_below;          /* lit through the last medium, of a stack that ends with a dielectric */
-    lq_scattering interfaces; /* LQ_SINGLE: the first hit at every interface, what is blocked then is lost */
-    size_t paths;             /* 0, or split light by its events on the first interface it meets (Ba19 sec. 5.3) */
-    double tolerance;         /* of every number; 0: 1e-4 */
-    int threads;              /* 0: one per core. Results do not depend on it. */
+    bool from_below;  /* lit through the last medium, of a stack that ends with a dielectric */
+    bool single;      /* the first hit at every interface alone: what is blocked after it is lost */
+    size_t paths;     /* 0, or split light by its events on the first interface it meets (Ba19 sec. 5.3) */
+    double tolerance; /* of every number; 0: 1e-4 */
+    int threads;      /* 0: one per core. Results do not depend on it. */
 } lq_stack_query;
 
 /* 3 where any number of the description is [r, g, b], otherwise 1. */
@@ -628,10 +628,11 @@ int lq_stack_channels(const lq_stack *stack);
 
 /* Exact, by adding layers as operators on cosines (B18 sec. 5.1; docs/theory.md, "Stacks"): all orders of
  * scattering at every interface, all reflections between them, media absorb tau^(1/mu) along straight lines.
- * light[(m * channels + c)], or with paths light[(m * channels + c) * paths + p]: p = 0 is what the first interface
- * reflects or lets through at once, p the light that met it p + 1 times; the last holds all the rest.
- * LQ_BAD_INPUT: a cosine outside [0,1], light from below an opaque base, and what is not solved: an anisotropic
- * interface, a medium that scatters, a range. LQ_NOT_CONVERGED: some estimate is above the tolerance; `light` is filled. */
+ * light[(m * channels + c)], or with paths light[(m * channels + c) * paths + p]: p = 0 is what the first
+ * interface reflects or lets through at once, p the light that met it p + 1 times; the last holds all the
+ * rest. LQ_BAD_INPUT: a cosine outside [0,1], light from below an opaque base, and what is not solved: an
+ * anisotropic interface, a medium that scatters, a range. LQ_NOT_CONVERGED: some estimate is above the
+ * tolerance; `light` is filled. */
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error);
 

@@ -59,7 +59,7 @@ lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_
     lq_plan plan;
     lq_status status = check(query, error);
     if (status != LQ_OK) return status;
-    status = lq_plan_make(&plan, stack, query->from_below, query->interfaces, error);
+    status = lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
     if (status != LQ_OK) return status;
     const size_t count = query->mu_count * (size_t)plan.channels * (query->paths ? query->paths : 1);
     lq_stack_light *now = malloc((count + 1) * sizeof *now);

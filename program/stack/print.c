@@ -106,7 +106,7 @@ int stack_print_json(const stack_result *r) {
             for (size_t p = 0; p < paths_of(r); p++) json_array_append_new(rows, row_json(r, m, c, p));
     json_t *root = json_pack("{s:s, s:s, s:s, s:o}", "stack", r->stack->name, "from",
                              r->query->from_below ? "below" : "above", "interfaces",
-                             r->query->interfaces == LQ_SINGLE ? "single" : "all", "light", rows);
+                             r->query->single ? "single" : "all", "light", rows);
     char *text =
         root ? json_dumps(root, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12)) : NULL;
     json_decref(root);

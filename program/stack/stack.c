@@ -101,7 +101,7 @@ static int solve(const stack_request *request, const lq_stack *stack) {
     const lq_stack_query query = {.mu = request->cosines.mu,
                                   .mu_count = request->cosines.count,
                                   .from_below = request->from == 1,
-                                  .interfaces = request->interfaces == 1 ? LQ_SINGLE : LQ_MULTIPLE,
+                                  .single = request->interfaces == 1,
                                   .paths = request->paths,
                                   .tolerance = request->tolerance,
                                   .threads = (int)request->threads};

@@ -1,0 +1,450 @@
+/* Light of layered stacks: checked values, exact limits, identities, and honest estimates. */
+#include "lacquer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "microfacet/fresnel.h"
+#include "microfacet/gauss.h"
+#include "tests/expect.h"
+
+#define LAYERS(text)         "{\"layers\": [" text "]}"
+#define DIELECTRIC(n, alpha) "{\"dielectric\": {\"n\": " #n ", \"alpha\": " #alpha "}}"
+#define COATING(n, alpha, tau)                                                                               \
+    "{\"dielectric\": {\"n\": " #n ", \"alpha\": " #alpha "}, \"medium\": {\"tau\": " #tau "}}"
+#define CONDUCTOR(n, k, alpha) "{\"conductor\": {\"n\": " #n ", \"kappa\": " #k ", \"alpha\": " #alpha "}}"
+#define LAMBERTIAN(rho)        "{\"lambertian\": {\"rho\": " #rho "}}"
+
+enum { MOST = 256 };
+
+static lq_stack *parse(const char *text) {
+    lq_stack *stack;
+    lq_error error = {""};
+    if (lq_stack_parse(&stack, text, "a.json", 0, &error) != LQ_OK) fail_msg("%s", error.text);
+    return stack;
+}
+
+static void solve(const char *text, const lq_stack_query *query, lq_stack_light *light) {
+    lq_stack *stack = parse(text);
+    lq_error error = {""};
+    const lq_status status = lq_stack_solve(stack, query, light, NULL, &error);
+    if (status != LQ_OK) fail_msg("%s: %s", text, error.text);
+    lq_stack_free(stack);
+}
+
+static lq_stack_light light_at(const char *text, double mu, double tolerance) {
+    const lq_stack_query query = {.mu = &mu, .mu_count = 1, .tolerance = tolerance};
+    lq_stack_light light;
+    solve(text, &query, &light);
+    return light;
+}
+
+/* ======================================================================================
+ *                                     Checked values
+ * ====================================================================================== */
+
+static const char frosted[] = LAYERS(DIELECTRIC(1.5, 0.2) "," CONDUCTOR(0.2, 3.9, 0.05));
+static const char varnished[] = LAYERS(COATING(1.3, 0.1, 0.9) "," COATING(1.8, 0.4, 0.7) "," LAMBERTIAN(0.7));
+static const char slab[] = LAYERS(COATING(1.5, 0.1, 0.7) "," DIELECTRIC(1, 0.3));
+static const char white[] = LAYERS(DIELECTRIC(1.3, 0.2) "," DIELECTRIC(1, 0.2) "," DIELECTRIC(
+    1.3, 0.2) "," DIELECTRIC(1, 0.2) "," DIELECTRIC(1.3, 0.2) "," CONDUCTOR(0, 1, 0));
+
+/* Random walks of 4e6 rays; sin2 and mean of them to 4e-4. Four standard errors. */
+static void test_checked_values(void **state) {
+    (void)state;
+    static const struct {
+        const char *stack;
+        double mu, reflected, sigma, transmitted, sigma_transmitted, sin2, mean;
+    } walks[] = {
+        {frosted, 1.0, .915303, 4e-5, 0, 0, .16106, 0},
+        {frosted, 0.6, .858651, 7e-5, 0, 0, .59837, .61600},
+        {frosted, 0.15, .814363, 8e-5, 0, 0, .71115, .64033},
+        {varnished, 1.0, .107233, 9e-5, 0, 0, .40691, 0},
+        {varnished, 0.6, .115720, 1e-4, 0, 0, .53345, .26799},
+        {varnished, 0.15, .302440, 2e-4, 0, 0, .84668, .79257},
+        {slab, 1.0, .061473, 1e-4, .585676, 1e-4, .23455, 0},
+        {slab, 0.6, .096334, 1e-4, .402038, 2e-4, .62635, .64862},
+        {slab, 0.15, .332007, 2e-4, .155681, 1e-4, .88463, .89774},
+        {white, 1.0, 1.0, 1e-11, 0, 0, .22480, 0},
+    };
+    for (size_t i = 0; i < sizeof walks / sizeof *walks; i++) {
+        const lq_stack_light light = light_at(walks[i].stack, walks[i].mu, 1e-5);
+        assert_near(light.reflected.energy, walks[i].reflected, 4.0 * walks[i].sigma);
+        assert_near(light.transmitted.energy, walks[i].transmitted, 4.0 * walks[i].sigma_transmitted);
+        assert_near(light.reflected.sin2, walks[i].sin2, 1.6e-3);
+        assert_near(light.reflected.mean, walks[i].mean, 1.6e-3);
+    }
+}
+
+/* ======================================================================================
+ *                                     Exact limits
+ * ====================================================================================== */
+
+static void test_lossless_is_one(void **state) {
+    (void)state;
+    static const char *const stacks[] = {
+        white,
+        LAYERS(DIELECTRIC(1.5, 1) "," CONDUCTOR(0, 2, 0.3)),
+        LAYERS(DIELECTRIC(1.5, 0) "," LAMBERTIAN(1)),
+        LAYERS(DIELECTRIC(2.4, 0.7) "," DIELECTRIC(1.2, 0.01) "," LAMBERTIAN(1)),
+        LAYERS(DIELECTRIC(1.5, 0) "," CONDUCTOR(0, 2,
+                                                0)), /* total reflection traps light that nothing lets in */
+        LAYERS(DIELECTRIC(1.7, 0.3) "," DIELECTRIC(1, 0.3))};
+    const double mu[] = {1.0, 0.6, 0.15, 1e-3};
+    for (size_t i = 0; i < sizeof stacks / sizeof *stacks; i++) {
+        const lq_stack_query query = {.mu = mu, .mu_count = 4, .tolerance = 1e-3};
+        lq_stack_light light[4];
+        solve(stacks[i], &query, light);
+        for (int m = 0; m < 4; m++)
+            assert_near(light[m].reflected.energy + light[m].transmitted.energy, 1.0, 1e-10);
+    }
+}
+
+/* Smooth interfaces: an interface of reflectance a over media of transmittance t over what reflects b. */
+static double over(double a, double t, double b) {
+    return a + (1.0 - a) * (1.0 - a) * t * t * b / (1.0 - a * t * t * b);
+}
+
+static void test_smooth_closed_form(void **state) {
+    (void)state;
+    const char *stack = LAYERS(COATING(1.5, 0, 0.8) "," COATING(1.9, 0, 0.6) "," CONDUCTOR(0.2, 3.9, 0));
+    for (double mu = 0.1; mu <= 1.0; mu += 0.3) {
+        double cos1, cos2;
+        const double a = lq_fresnel_dielectric(mu, 1.5, &cos1),
+                     b = lq_fresnel_dielectric(cos1, 1.9 / 1.5, &cos2);
+        const double base = lq_fresnel_conductor(cos2, 0.2 / 1.9, 3.9 / 1.9);
+        const double exact = over(a, pow(0.8, 1.0 / cos1), over(b, pow(0.6, 1.0 / cos2), base));
+        const lq_stack_light light = light_at(stack, mu, 1e-6);
+        assert_near(light.reflected.energy, exact, 1e-6);
+        assert_near(light.reflected.sin2, 1.0 - mu * mu, 1e-6);
+        assert_near(light.reflected.mean, sqrt(1.0 - mu * mu), 1e-6);
+        assert_near(light.reflected.across, 0.0, 1e-6);
+    }
+}
+
+/* A slab between smooth faces, both ways, and what lies along the way out. */
+static void test_smooth_slab(void **state) {
+    (void)state;
+    const char *stack = LAYERS(COATING(1.5, 0, 0.7) "," COATING(1.2, 0, 0.9));
+    const double mu = 0.4;
+    double cos1, cos2;
+    const double a = lq_fresnel_dielectric(mu, 1.5, &cos1), b = lq_fresnel_dielectric(cos1, 0.8, &cos2);
+    const double t = pow(0.7, 1.0 / cos1), out = pow(0.9, 1.0 / cos2);
+    const double passes = (1.0 - a) * t * (1.0 - b) / (1.0 - a * b * t * t) * out;
+    const lq_stack_light light = light_at(stack, mu, 1e-6);
+    assert_near(light.transmitted.energy, passes, 1e-6);
+    assert_near(light.transmitted.sin2, 1.0 - cos2 * cos2, 1e-6);
+    assert_near(light.transmitted.mean, sqrt(1.0 - cos2 * cos2), 1e-6);
+    const lq_stack_query below = {.mu = &cos2, .mu_count = 1, .from_below = true, .tolerance = 1e-6};
+    lq_stack_light back;
+    solve(stack, &below, &back);
+    assert_near(back.transmitted.energy, passes, 1e-6);
+    assert_near(back.transmitted.sin2, 1.0 - mu * mu, 1e-6);
+    assert_near(back.reflected.energy, out * out * over(b, t, a), 1e-6);
+}
+
+/* ======================================================================================
+ *                            Other solvers of this library
+ * ====================================================================================== */
+
+static double eval(const char *table, const double *point) {
+    lq_error error = {""};
+    lq_settings settings = lq_settings_default();
+    settings.tolerance = 1e-5;
+    const lq_kind *kind = lq_kind_find(table, &error);
+    double value[LQ_MAX_CHANNELS], estimate;
+    assert_non_null(kind);
+    assert_true(lq_eval(kind, &settings, point, value, &estimate, &error) == LQ_OK);
+    return value[0];
+}
+
+static void test_single_interfaces(void **state) {
+    (void)state;
+    const double at[][2] = {{0.9, 0.3}, {0.3, 1.0}, {0.1, 0.05}};
+    for (size_t i = 0; i < 3; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": %g}}]}",
+                 at[i][1]);
+        const double point[3] = {at[i][0], at[i][1], 1.5};
+        const lq_stack_light light = light_at(text, at[i][0], 1e-5);
+        assert_near(light.reflected.energy, eval("fgd-dielectric", point), 2e-5);
+        snprintf(text, sizeof text,
+                 "{\"layers\": [{\"conductor\": {\"n\": 0.2, \"kappa\": 3.9, \"alpha\": %g}}]}", at[i][1]);
+        const double metal[4] = {at[i][0], at[i][1], 0.2, 3.9};
+        assert_near(light_at(text, at[i][0], 1e-5).reflected.energy, eval("fgd", metal), 2e-5);
+    }
+}
+
+static void test_coated_lambertian(void **state) {
+    (void)state;
+    /* mu, alpha, eta, tau, rho in the order of the kind */
+    lq_error error = {""};
+    const lq_kind *kind = lq_kind_find("coated-lambertian", &error);
+    assert_non_null(kind);
+    const double mu[] = {0.9, 0.25}, alpha[] = {0.1, 0.6}, tau[] = {0.8, 1.0}, rho[] = {0.5, 0.9};
+    for (int i = 0; i < 2; i++) {
+        char text[240];
+        double point[LQ_MAX_AXES] = {0};
+        for (int a = 0; a < kind->axis_count; a++) {
+            const char *name = kind->axes[a].name;
+            point[a] = strcmp(name, "mu") == 0      ? mu[i]
+                       : strcmp(name, "alpha") == 0 ? alpha[i]
+                       : strcmp(name, "tau") == 0   ? tau[i]
+                       : strcmp(name, "rho") == 0   ? rho[i]
+                                                    : 1.5;
+        }
+        snprintf(text, sizeof text,
+                 "{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": %g}, \"medium\": {\"tau\": %g}},"
+                 "{\"lambertian\": {\"rho\": %g}}]}",
+                 alpha[i], tau[i], rho[i]);
+        assert_near(light_at(text, mu[i], 1e-5).reflected.energy, eval("coated-lambertian", point), 2e-5);
+    }
+}
+
+/* ======================================================================================
+ *                                      Identities
+ * ====================================================================================== */
+
+/* 2 mu dmu on [0,1], dense at both ends of [0, cut] and [cut, 1]. */
+static size_t hemisphere(double cut, double *mu, double *weight) {
+    lq_gauss rule;
+    lq_gauss_make(&rule, 24);
+    for (int i = 0; i < 48; i++) {
+        const double from = i < 24 ? 0.0 : cut, width = i < 24 ? cut : 1.0 - cut, x = rule.node[i % 24];
+        mu[i] = from + width * x * x;
+        weight[i] = 4.0 * x * width * mu[i] * rule.weight[i % 24];
+    }
+    return 48;
+}
+
+/* mu0 r(mu0 -> mu) = mu r(mu -> mu0): the mean of sin2 over diffuse light is that of what diffuse light
+ * arrives with; and T from above is n^2 times T from below. */
+static void test_reciprocity(void **state) {
+    (void)state;
+    const char *stack = LAYERS(COATING(1.5, 0.1, 0.7) "," COATING(1.2, 0.4, 0.9));
+    double mu[MOST], weight[MOST], out = 0.0, in = 0.0, down = 0.0, up = 0.0;
+    lq_stack_light light[MOST];
+    lq_stack_query query = {.mu = mu, .tolerance = 1e-5};
+    query.mu_count = hemisphere(0.3, mu, weight);
+    solve(stack, &query, light);
+    for (size_t i = 0; i < query.mu_count; i++) {
+        out += weight[i] * light[i].reflected.energy * light[i].reflected.sin2;
+        in += weight[i] * light[i].reflected.energy * (1.0 - mu[i] * mu[i]);
+        down += weight[i] * light[i].transmitted.energy;
+    }
+    assert_near(out, in, 1e-5);
+    query.mu_count = hemisphere(sqrt(1.0 - 1.0 / 1.44), mu, weight);
+    query.from_below = true;
+    solve(stack, &query, light);
+    for (size_t i = 0; i < query.mu_count; i++) up += weight[i] * light[i].transmitted.energy;
+    assert_near(down, up * 1.44, 2e-5);
+}
+
+static void test_paths_add_up(void **state) {
+    (void)state;
+    const double mu[] = {0.8, 0.2};
+    enum { PATHS = 5 };
+    lq_stack_query query = {.mu = mu, .mu_count = 2, .tolerance = 1e-4};
+    for (int i = 0; i < 2; i++) {
+        const char *stack = i ? slab : frosted;
+        lq_stack_light all[2], paths[2 * PATHS];
+        query.paths = 0;
+        solve(stack, &query, all);
+        query.paths = PATHS;
+        solve(stack, &query, paths);
+        for (int m = 0; m < 2; m++) {
+            double reflected = 0.0, sin2 = 0.0, transmitted = 0.0;
+            for (int p = 0; p < PATHS; p++) {
+                const lq_stack_light *l = &paths[m * PATHS + p];
+                reflected += l->reflected.energy;
+                sin2 += l->reflected.energy * l->reflected.sin2;
+                transmitted += l->transmitted.energy;
+            }
+            assert_near(reflected, all[m].reflected.energy, 2e-4);
+            assert_near(sin2, all[m].reflected.energy * all[m].reflected.sin2, 2e-4);
+            assert_near(transmitted, all[m].transmitted.energy, 2e-4);
+        }
+        const lq_stack_light top = light_at(LAYERS(DIELECTRIC(1.5, 0.2)), mu[0], 1e-4);
+        if (i == 0) assert_near(paths[0].reflected.energy, top.reflected.energy, 2e-4);
+    }
+}
+
+/* Doubling: equal layers as one run, and cut into runs by a layer that changes next to nothing. */
+static void test_doubling(void **state) {
+    (void)state;
+    char equal[8192] = "{\"layers\": [", broken[8192] = "{\"layers\": [";
+    for (int i = 0; i < 12; i++) {
+        char a[120], b[120];
+        snprintf(a, sizeof a, "%s" COATING(1.5, 0.1, 0.99) "," DIELECTRIC(1, 0.3), i ? "," : "");
+        snprintf(b, sizeof b,
+                 "%s{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.1}, \"medium\": {\"tau\": %.12f}}," DIELECTRIC(
+                     1, 0.3),
+                 i ? "," : "", 0.99 + 1e-9 * i);
+        strcat(equal, a);
+        strcat(broken, b);
+    }
+    strcat(equal, "]}");
+    strcat(broken, "]}");
+    const lq_stack_light one = light_at(equal, 0.7, 1e-3), many = light_at(broken, 0.7, 1e-3);
+    assert_near(one.reflected.energy, many.reflected.energy, 1e-7);
+    assert_near(one.transmitted.energy, many.transmitted.energy, 1e-7);
+    assert_near(one.transmitted.sin2, many.transmitted.sin2, 1e-7);
+    assert_true(one.reflected.energy > 0.3 && one.transmitted.energy > 0.01);
+}
+
+static void test_channels(void **state) {
+    (void)state;
+    const char *rgb =
+        "{\"layers\": [{\"dielectric\": {\"n\": [1.5, 1.5, 1.6], \"alpha\": 0.2}, \"medium\": {\"tau\": "
+        "[0.8, 0.5, 0.3]}}, {\"conductor\": {\"n\": [0.2, 0.9, 1.5], \"kappa\": [3.9, 2.5, 1.9], "
+        "\"alpha\": 0.05}}]}";
+    static const char *const one[3] = {LAYERS(COATING(1.5, 0.2, 0.8) "," CONDUCTOR(0.2, 3.9, 0.05)),
+                                       LAYERS(COATING(1.5, 0.2, 0.5) "," CONDUCTOR(0.9, 2.5, 0.05)),
+                                       LAYERS(COATING(1.6, 0.2, 0.3) "," CONDUCTOR(1.5, 1.9, 0.05))};
+    const double mu = 0.5;
+    const lq_stack_query query = {.mu = &mu, .mu_count = 1, .tolerance = 1e-5};
+    lq_stack_light light[3];
+    solve(rgb, &query, light);
+    for (int c = 0; c < 3; c++) {
+        const lq_stack_light alone = light_at(one[c], mu, 1e-5);
+        assert_near(light[c].reflected.energy, alone.reflected.energy, 2e-5);
+        assert_near(light[c].reflected.across, alone.reflected.across, 2e-5);
+    }
+}
+
+/* ======================================================================================
+ *                                      Estimates
+ * ====================================================================================== */
+
+static double apart(const lq_stack_lobe *a, const lq_stack_lobe *b) {
+    return fmax(fmax(fabs(a->energy - b->energy), fabs(a->sin2 - b->sin2)),
+                fmax(fabs(a->mean - b->mean), fabs(a->across - b->across)));
+}
+
+/* A stack of 1 to 4 layers from a counter: roughnesses smooth, small, 1 and between, indices from 1 to 2.5.
+ */
+static void random_stack(unsigned seed, char *text, size_t size) {
+    unsigned long long x = 6364136223846793005ull * (seed + 1);
+    double u[16];
+    for (int i = 0; i < 16; i++) {
+        x = 6364136223846793005ull * x + 1442695040888963407ull;
+        u[i] = (double)(x >> 11) / 9007199254740992.0;
+    }
+    const int layers = 1 + (int)(4.0 * u[0]);
+    size_t at = (size_t)snprintf(text, size, "{\"layers\": [");
+    for (int i = 0; i < layers; i++) {
+        const double *v = u + 1 + 3 * i, alpha = v[0] < 0.2 ? 0.0 : v[0] > 0.9 ? 1.0 : v[0] * v[0];
+        const bool base = i + 1 == layers && v[2] < 0.5;
+        const char *comma = i ? "," : "";
+        if (base)
+            at += (size_t)snprintf(text + at, size - at,
+                                   "%s{\"conductor\": {\"n\": %.4f, \"kappa\": %.4f, \"alpha\": %.4f}}",
+                                   comma, 2.0 * v[1], 4.0 * v[2], alpha);
+        else
+            at += (size_t)snprintf(
+                text + at, size - at,
+                "%s{\"dielectric\": {\"n\": %.4f, \"alpha\": %.4f}, \"medium\": {\"tau\": %.4f}}", comma,
+                1.0 + 1.5 * v[1], alpha, v[2]);
+    }
+    snprintf(text + at, size - at, "]}");
+}
+
+static void test_estimates_cover(void **state) {
+    (void)state;
+    const double mu[] = {1.0, 0.7, 0.4, 0.1};
+    for (unsigned seed = 0; seed < 12; seed++) {
+        char text[1024];
+        random_stack(seed, text, sizeof text);
+        lq_stack_query query = {.mu = mu, .mu_count = 4, .tolerance = 1e-3};
+        lq_stack_light coarse[4], fine[4];
+        solve(text, &query, coarse);
+        query.tolerance = 1e-4;
+        solve(text, &query, fine);
+        for (int m = 0; m < 4; m++) {
+            const double off = fmax(apart(&coarse[m].reflected, &fine[m].reflected),
+                                    apart(&coarse[m].transmitted, &fine[m].transmitted));
+            if (off > coarse[m].error + fine[m].error)
+                fail_msg("%s at mu = %g: off by %.2g, estimates %.2g and %.2g", text, mu[m], off,
+                         coarse[m].error, fine[m].error);
+        }
+    }
+}
+
+static void test_threads_do_not_matter(void **state) {
+    (void)state;
+    const double mu[] = {0.9, 0.3};
+    lq_stack_light light[2][2];
+    for (int i = 0; i < 2; i++) {
+        const lq_stack_query query = {.mu = mu, .mu_count = 2, .threads = i ? 3 : 1};
+        solve(slab, &query, light[i]);
+    }
+    assert_memory_equal(light[0], light[1], sizeof light[0]);
+}
+
+/* The first hit alone: what is blocked is lost, of one interface and of a stack. */
+static void test_single(void **state) {
+    (void)state;
+    const double mu = 0.3;
+    const lq_stack_query query = {.mu = &mu, .mu_count = 1, .single = true, .tolerance = 1e-5};
+    lq_stack_light light;
+    solve(LAYERS(CONDUCTOR(0, 1, 0.5)), &query, &light);
+    const double point[2] = {mu, 0.5};
+    assert_near(light.reflected.energy, eval("albedo", point), 2e-5);
+    solve(LAYERS(DIELECTRIC(1.5, 0.5)), &query, &light);
+    const double lost = 1.0 - light.reflected.energy - light.transmitted.energy;
+    assert_true(lost > 1e-3 && lost < 0.2);
+    solve(LAYERS(DIELECTRIC(1.5, 0)), &query, &light);
+    assert_near(light.reflected.energy + light.transmitted.energy, 1.0, 1e-12);
+}
+
+/* ======================================================================================
+ *                                       Refusals
+ * ====================================================================================== */
+
+static void refused(const char *text, const lq_stack_query *query, const char *message) {
+    lq_stack *stack = parse(text);
+    lq_error error = {""};
+    lq_stack_light light;
+    assert_int_equal(lq_stack_solve(stack, query, &light, NULL, &error), LQ_BAD_INPUT);
+    if (!strstr(error.text, message)) fail_msg("'%s' does not say '%s'", error.text, message);
+    lq_stack_free(stack);
+}
+
+static void test_refusals(void **state) {
+    (void)state;
+    double mu = 0.5;
+    lq_stack_query query = {.mu = &mu, .mu_count = 1};
+    refused(LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": {\"x\": 0.1, \"y\": 0.3}}}"), &query,
+            "layer 1 is anisotropic");
+    refused(
+        LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.1}, \"medium\": {\"sigma_a\": 0, \"sigma_s\": 1, "
+               "\"depth\": 1}}," LAMBERTIAN(0.5)),
+        &query, "layer 1 has a medium that scatters");
+    query.from_below = true;
+    refused(frosted, &query, "light from below a conductor base");
+    query.from_below = false;
+    mu = 1.5;
+    refused(frosted, &query, "mu = 1.5; accepted: 0 <= mu <= 1");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_checked_values),
+        cmocka_unit_test(test_lossless_is_one),
+        cmocka_unit_test(test_smooth_closed_form),
+        cmocka_unit_test(test_smooth_slab),
+        cmocka_unit_test(test_single_interfaces),
+        cmocka_unit_test(test_coated_lambertian),
+        cmocka_unit_test(test_reciprocity),
+        cmocka_unit_test(test_paths_add_up),
+        cmocka_unit_test(test_doubling),
+        cmocka_unit_test(test_channels),
+        cmocka_unit_test(test_estimates_cover),
+        cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_single),
+        cmocka_unit_test(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
