@@ -323,7 +323,8 @@ static bool counts_energy(const lq_question *q) {
 static void load_rewards(const interface *f, const lq_question *q, const lq_leaving *at, size_t first,
                          size_t count, solution *x) {
     const int n = f->nodes;
-    memset(x->hits.reward, 0, (2 * (size_t)n + 2 * LQ_LEAVING) * sizeof(lq_v8));
+    memset(x->hits.reward, 0, 2 * (size_t)n * sizeof(lq_v8));
+    memset(x->leaving, 0, 2 * LQ_LEAVING * sizeof(lq_v8));
     for (size_t l = 0; l < count; l++) {
         const double tau = q->tau[first + l];
         const int payer = is_complement(q, tau) ? q->side : q->reward_side;

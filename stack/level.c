@@ -147,6 +147,10 @@ static lq_status step_block(const solving *s, const lq_plan_step *step, bool fir
     return lq_block_part(all, &rows, block, error);
 }
 
+static double crossing(double tau, double mu) {
+    return tau == 1.0 ? 1.0 : tau > 0.0 && mu > 0.0 ? exp(log(tau) / mu) : 0.0;
+}
+
 static lq_status fill_steps(const solving *s, const lq_plan_chain *chain, int mode, lq_pile *pile,
                             lq_error *error) {
     lq_status status = LQ_OK;
@@ -154,19 +158,17 @@ static lq_status fill_steps(const solving *s, const lq_plan_chain *chain, int mo
         status = step_block(s, &chain->step[i], i == 0, mode, &pile->block[i], error);
     for (size_t i = 0; i <= chain->steps && status == LQ_OK; i++) {
         const lq_node_axis *axis = &s->axis[chain->medium[i].axis];
-        for (int j = 0; j < axis->count; j++) {
-            const double tau = chain->medium[i].tau;
-            pile->crossing[i][j] = tau == 1.0 ? 1.0 : tau > 0.0 ? exp(log(tau) / axis->mu[j]) : 0.0;
-        }
+        for (int j = 0; j < axis->count; j++)
+            pile->crossing[i][j] = crossing(chain->medium[i].tau, axis->mu[j]);
     }
     return status;
 }
 
 /* The rewards of a mode at the nodes of an outer axis: 1, then sin^2, or the one there is. */
-static void fill_rewards(const lq_node_axis *axis, const double *crossing, int mode, double *reward) {
+static void fill_rewards(const lq_node_axis *axis, const double *crossings, int mode, double *reward) {
     const size_t n = (size_t)axis->count;
     for (size_t j = 0; j < n; j++) {
-        const double sine2 = (1.0 - axis->mu[j]) * (1.0 + axis->mu[j]), pays = crossing ? crossing[j] : 1.0;
+        const double sine2 = (1.0 - axis->mu[j]) * (1.0 + axis->mu[j]), pays = crossings ? crossings[j] : 0.0;
         reward[j] = pays * (mode == 2 ? sine2 : 1.0);
         reward[n + j] = pays * sine2;
     }
@@ -187,44 +189,57 @@ static lq_stack_lobe lobe_of(const flux *f) {
     return lobe;
 }
 
-static void pay(flux *f, int mode, const double *value, double sine) {
+/* Add the values of one mode; `arrives`: what a crossing of the medium outside leaves of the light. */
+static void pay(flux *f, int mode, const double *value, double sine, double arrives) {
     if (mode == 0) {
-        f->energy = value[0];
-        f->sin2 = value[1];
+        f->energy = arrives * value[0];
+        f->sin2 = arrives * value[1];
     }
-    if (mode == 1) f->mean = sine * value[0];
-    if (mode == 2) f->cos2phi = value[0];
+    if (mode == 1) f->mean = arrives * sine * value[0];
+    if (mode == 2) f->cos2phi = arrives * value[0];
+}
+
+static size_t paths_of(const lq_stack_query *query) {
+    return query->paths ? query->paths : 1;
+}
+
+/* One mode into the sums of every cosine, path and side; `values` is as large as they are twice. */
+static lq_status solve_mode(const solving *s, const lq_plan_chain *chain, int mode, double *values,
+                            flux *sums, lq_error *error) {
+    const size_t paths = paths_of(s->query);
+    double reward[2][2 * LQ_NODES_MAX];
+    lq_pile pile;
+    lq_status status = lq_pile_make(&pile, chain, error);
+    if (status == LQ_OK) status = fill_steps(s, chain, mode, &pile, error);
+    if (status == LQ_OK) {
+        fill_rewards(&s->axis[chain->medium[0].axis], pile.crossing[0], mode, reward[0]);
+        fill_rewards(&s->axis[chain->medium[chain->steps].axis], pile.crossing[chain->steps], mode,
+                     reward[1]);
+        status = lq_pile_values(&pile, reward[0], reward[1], paths, values, error);
+    }
+    lq_pile_free(&pile);
+    for (size_t i = 0; i < 2 * paths * s->query->mu_count && status == LQ_OK; i++) {
+        const double mu = s->query->mu[i / 2 / paths];
+        pay(&sums[i], mode, values + 2 * i, lq_sine(mu), crossing(chain->medium[0].tau, mu));
+    }
+    return status;
 }
 
 static lq_status solve_channel(const solving *s, int channel, lq_error *error) {
     const lq_plan_chain *chain = &s->plan->chain[channel];
-    const size_t paths = s->query->paths ? s->query->paths : 1, count = s->query->mu_count;
-    const size_t channels = (size_t)s->plan->channels;
-    const lq_node_axis *outer = &s->axis[chain->medium[0].axis];
-    const lq_node_axis *beyond = &s->axis[chain->medium[chain->steps].axis];
+    const size_t paths = paths_of(s->query), count = s->query->mu_count;
     flux *sums = calloc(2 * paths * count + 1, sizeof *sums);
     double *values = malloc((4 * paths * count + 1) * sizeof *values);
     lq_status status =
         sums && values ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
-    for (int mode = 0; mode < LQ_MODES && status == LQ_OK; mode++) {
-        lq_pile pile;
-        double reward[2][2 * LQ_NODES_MAX];
-        status = lq_pile_make(&pile, chain, error);
-        if (status == LQ_OK) status = fill_steps(s, chain, mode, &pile, error);
-        fill_rewards(outer, NULL, mode, reward[0]);
-        fill_rewards(beyond, pile.crossing ? pile.crossing[chain->steps] : NULL, mode, reward[1]);
-        if (status == LQ_OK) status = lq_pile_values(&pile, reward[0], reward[1], paths, values, error);
-        lq_pile_free(&pile);
-        for (size_t i = 0; i < 2 * paths * count && status == LQ_OK; i++)
-            pay(&sums[i], mode, values + 2 * i, lq_sine(s->query->mu[i / 2 / paths]));
+    for (int mode = 0; mode < LQ_MODES && status == LQ_OK; mode++)
+        status = solve_mode(s, chain, mode, values, sums, error);
+    for (size_t i = 0; i < count * paths && status == LQ_OK; i++) {
+        const size_t m = i / paths,
+                     place = (m * (size_t)s->plan->channels + (size_t)channel) * paths + i % paths;
+        s->light[place].reflected = lobe_of(&sums[2 * i]);
+        s->light[place].transmitted = chain->opaque ? (lq_stack_lobe){0} : lobe_of(&sums[2 * i + 1]);
     }
-    for (size_t m = 0; m < count && status == LQ_OK; m++)
-        for (size_t p = 0; p < paths; p++) {
-            const flux *f = &sums[2 * (m * paths + p)];
-            lq_stack_light *light = &s->light[(m * channels + (size_t)channel) * paths + p];
-            light->reflected = lobe_of(&f[0]);
-            light->transmitted = chain->opaque ? (lq_stack_lobe){0} : lobe_of(&f[1]);
-        }
     free(sums);
     free(values);
     return status;

@@ -33,6 +33,9 @@ struct lq_surface_work {
     /* What a hit sends to the axes of both media, own side first: [material and mode][rising i, then falling
      * i] [columns]; and how much of it leaves from depth k, [k * axis + a]. */
     double *out[2], *survival[2];
+    /* What that is scaled by, so that with what the nodes keep it is all that the hit sends there: [(material
+     * * 2 + (own side, other side)) * depths + k][rising i, then falling i]. */
+    double *balance[2];
     entry_rows entry[2];
 };
 
@@ -70,6 +73,7 @@ static size_t place_arrays(lq_surface_work *w) {
         w->rise[s] = take(w->memory, &at, each * n * 4 * n);
         w->out[s] = take(w->memory, &at, each * 2 * n * w->columns);
         w->survival[s] = take(w->memory, &at, depths * axis_count(&w->spec, s));
+        w->balance[s] = take(w->memory, &at, (size_t)w->spec.materials * 2 * depths * 2 * n);
         e->arrival = take(w->memory, &at, rows * depths);
         e->leaving = take(w->memory, &at, rows * each * leaving_size(w));
         e->staying = take(w->memory, &at, rows * each * 3 * n);
@@ -209,6 +213,27 @@ static lq_facet_sums sums_of(const lq_surface_work *w, int side, double v_z) {
                            .cuts = {&s->sharp[side], &s->sharp[1 - side]}};
 }
 
+/* Nodes and axis do not agree to rounding on what leaves unhindered; travel between hits goes by the nodes.
+ */
+static void balance_row(lq_surface_work *w, int side, int material, size_t q) {
+    const size_t n = (size_t)w->nodes, depths = (size_t)w->depths, v = (size_t)material * LQ_MODES;
+    const double *row = q < n ? w->rise[side] + (v * n + q) * 4 * n : w->fall[side] + (v * n + q - n) * 4 * n;
+    const double *out = w->out[side] + (v * 2 * n + q) * w->columns;
+    for (int way = 0; way < w->sides; way++) {
+        const int to = way == 0 ? side : 1 - side;
+        const size_t axis = axis_count(&w->spec, to);
+        for (size_t k = 0; k < depths; k++) {
+            double by_nodes = 0.0, by_axis = 0.0;
+            for (size_t j = 0; j < n; j++)
+                by_nodes += row[(size_t)(2 * way) * n + j] * w->level->survival[k * n + j];
+            for (size_t a = 0; a < axis; a++) by_axis += out[a] * w->survival[to][k * axis + a];
+            w->balance[side][(((size_t)material * 2 + (size_t)way) * depths + k) * 2 * n + q] =
+                by_axis > 1e-9 ? by_nodes / by_axis : 1.0;
+        }
+        out += axis;
+    }
+}
+
 /* The row of one node of the level, rising (v below the horizon) or falling. */
 static lq_status node_row(lq_surface_work *w, int side, bool rising, int node, lq_error *error) {
     const size_t n = (size_t)w->nodes;
@@ -225,6 +250,8 @@ static lq_status node_row(lq_surface_work *w, int side, bool rising, int node, l
         if (w->sides == 2) lq_facet_sums_project(&f, LQ_PART_PASSES, v, out + axis_count(&w->spec, side));
     }
     lq_facet_sums_free(&f);
+    for (int m = 0; m < w->spec.materials; m++)
+        balance_row(w, side, m, (size_t)node + (rising ? 0 : (size_t)w->nodes));
     return LQ_OK;
 }
 
@@ -364,8 +391,10 @@ static void load_source(const lq_surface_work *w, size_t v, size_t column, size_
         for (size_t k = 0; k < depths; k++) {
             const size_t depth = paid == s ? k : depths - 1 - k;
             const double leaves = w->survival[paid][depth * axis + node];
+            const size_t way = (v / LQ_MODES) * 2 + (paid == s ? 0 : 1);
+            const double *balance = w->balance[s] + (way * depths + depth) * 2 * n;
             lq_v8 *to = source + ((size_t)s * depths + k) * 2 * n;
-            for (size_t q = 0; q < 2 * n; q++) to[q][lane] = leaves * out[q * w->columns];
+            for (size_t q = 0; q < 2 * n; q++) to[q][lane] = balance[q] * leaves * out[q * w->columns];
         }
     }
 }

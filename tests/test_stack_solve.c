@@ -149,14 +149,17 @@ static void test_smooth_slab(void **state) {
  *                            Other solvers of this library
  * ====================================================================================== */
 
-static double eval(const char *table, const double *point) {
+static double eval(const char *table, lq_scattering scattering, const double *point) {
     lq_error error = {""};
     lq_settings settings = lq_settings_default();
-    settings.tolerance = 1e-5;
     const lq_kind *kind = lq_kind_find(table, &error);
     double value[LQ_MAX_CHANNELS], estimate;
     assert_non_null(kind);
-    assert_true(lq_eval(kind, &settings, point, value, &estimate, &error) == LQ_OK);
+    settings.tolerance = fmax(1e-5, kind->finest_tolerance);
+    settings.scattering = scattering;
+    const lq_status status = lq_eval(kind, &settings, point, value, &estimate, &error);
+    if (status != LQ_OK && status != LQ_NOT_CONVERGED) fail_msg("%s", error.text);
+    assert_true(estimate <= 1.2e-4);
     return value[0];
 }
 
@@ -169,11 +172,11 @@ static void test_single_interfaces(void **state) {
                  at[i][1]);
         const double point[3] = {at[i][0], at[i][1], 1.5};
         const lq_stack_light light = light_at(text, at[i][0], 1e-5);
-        assert_near(light.reflected.energy, eval("fgd-dielectric", point), 2e-5);
+        assert_near(light.reflected.energy, eval("fgd-dielectric", LQ_MULTIPLE, point), 2e-5);
         snprintf(text, sizeof text,
                  "{\"layers\": [{\"conductor\": {\"n\": 0.2, \"kappa\": 3.9, \"alpha\": %g}}]}", at[i][1]);
         const double metal[4] = {at[i][0], at[i][1], 0.2, 3.9};
-        assert_near(light_at(text, at[i][0], 1e-5).reflected.energy, eval("fgd", metal), 2e-5);
+        assert_near(light_at(text, at[i][0], 1e-5).reflected.energy, eval("fgd", LQ_MULTIPLE, metal), 2e-5);
     }
 }
 
@@ -199,7 +202,8 @@ static void test_coated_lambertian(void **state) {
                  "{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": %g}, \"medium\": {\"tau\": %g}},"
                  "{\"lambertian\": {\"rho\": %g}}]}",
                  alpha[i], tau[i], rho[i]);
-        assert_near(light_at(text, mu[i], 1e-5).reflected.energy, eval("coated-lambertian", point), 2e-5);
+        assert_near(light_at(text, mu[i], 1e-5).reflected.energy,
+                    eval("coated-lambertian", LQ_MULTIPLE, point), 3e-5);
     }
 }
 
@@ -226,7 +230,7 @@ static void test_reciprocity(void **state) {
     const char *stack = LAYERS(COATING(1.5, 0.1, 0.7) "," COATING(1.2, 0.4, 0.9));
     double mu[MOST], weight[MOST], out = 0.0, in = 0.0, down = 0.0, up = 0.0;
     lq_stack_light light[MOST];
-    lq_stack_query query = {.mu = mu, .tolerance = 1e-5};
+    lq_stack_query query = {.mu = mu, .tolerance = 5e-5};
     query.mu_count = hemisphere(0.3, mu, weight);
     solve(stack, &query, light);
     for (size_t i = 0; i < query.mu_count; i++) {
@@ -234,7 +238,7 @@ static void test_reciprocity(void **state) {
         in += weight[i] * light[i].reflected.energy * (1.0 - mu[i] * mu[i]);
         down += weight[i] * light[i].transmitted.energy;
     }
-    assert_near(out, in, 1e-5);
+    assert_near(out, in, 2e-5);
     query.mu_count = hemisphere(sqrt(1.0 - 1.0 / 1.44), mu, weight);
     query.from_below = true;
     solve(stack, &query, light);
@@ -354,7 +358,7 @@ static void random_stack(unsigned seed, char *text, size_t size) {
 static void test_estimates_cover(void **state) {
     (void)state;
     const double mu[] = {1.0, 0.7, 0.4, 0.1};
-    for (unsigned seed = 0; seed < 12; seed++) {
+    for (unsigned seed = 0; seed < 8; seed++) {
         char text[1024];
         random_stack(seed, text, sizeof text);
         lq_stack_query query = {.mu = mu, .mu_count = 4, .tolerance = 1e-3};
@@ -391,10 +395,11 @@ static void test_single(void **state) {
     lq_stack_light light;
     solve(LAYERS(CONDUCTOR(0, 1, 0.5)), &query, &light);
     const double point[2] = {mu, 0.5};
-    assert_near(light.reflected.energy, eval("albedo", point), 2e-5);
+    assert_near(light.reflected.energy, eval("albedo", LQ_MULTIPLE, point), 2e-5);
     solve(LAYERS(DIELECTRIC(1.5, 0.5)), &query, &light);
-    const double lost = 1.0 - light.reflected.energy - light.transmitted.energy;
-    assert_true(lost > 1e-3 && lost < 0.2);
+    const double coating[4] = {mu, 0.5, 1.5, 1.0};
+    assert_near(light.transmitted.energy, eval("transmission", LQ_SINGLE, coating), 3e-5);
+    assert_true(light.reflected.energy + light.transmitted.energy < 0.8);
     solve(LAYERS(DIELECTRIC(1.5, 0)), &query, &light);
     assert_near(light.reflected.energy + light.transmitted.energy, 1.0, 1e-12);
 }
