@@ -636,6 +636,14 @@ int lq_stack_channels(const lq_stack *stack);
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error);
 
+/* A table over "mu" and any parameters of the layers, named as by lq_stack_set ("top.alpha"); `query` says
+ * the rest, its cosines and paths are not read. Channels: reflected, sin2, mean and across, then the same of
+ * transmitted light where there is some; of a stack in RGB the energies alone, reflected.r, .g and .b,
+ * transmitted.r, .g and .b. The fact "stack" holds the description. LQ_NOT_CONVERGED: the table is there, and
+ * its fact "error" says how far off. */
+lq_status lq_stack_precompute(const lq_stack *stack, const lq_stack_query *query, const lq_axis *axes,
+                              int axis_count, const lq_progress *progress, lq_table **table, lq_error *error);
+
 #ifdef __cplusplus
 }
 #endif

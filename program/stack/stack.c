@@ -37,8 +37,6 @@ typedef struct stack_request {
 } stack_request;
 
 static const char *const formats[] = {"text", "csv", "json", NULL};
-static const char *const interfaces[] = {"all", "single", NULL};
-static const char *const sides[] = {"above", "below", NULL};
 
 /* Cosines separated by commas. */
 static bool read_cosines(void *field, const char *value) {
@@ -67,9 +65,9 @@ static const cli_option options[] = {
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_INTERFACES, "interfaces", "all|single",
      "orders of scattering at each interface; single: what is blocked after one is lost (default all)",
-     CLI_CHOICE(stack_request, interfaces, interfaces)},
+     CLI_CHOICE(stack_request, interfaces, cli_interfaces)},
     {OPTION_FROM, "from", "above|below", "where the light comes from (default above)",
-     CLI_CHOICE(stack_request, from, sides)},
+     CLI_CHOICE(stack_request, from, cli_sides)},
     {OPTION_PATHS, "paths", "N", "split light by how often it met the first interface: 1, 2, ... N or more",
      CLI_COUNT(stack_request, paths, 1, MAX_PATHS)},
     {OPTION_TOLERANCE, "tolerance", "T", "absolute error of every number (default 1e-4)",

@@ -1,5 +1,6 @@
 /* precompute.c - `lacquer precompute`: a whole table on all cores, into a file. */
-#include "lacquer.h"
+#include "program/precompute/precompute.h"
+
 #include "program/catalogue.h"
 #include "program/message.h"
 #include "program/options.h"
@@ -13,28 +14,10 @@
 #include <string.h>
 #include <strings.h>
 
-enum { OPTION_AXIS = 256, OPTION_FORMAT, OPTION_OUTPUT = 'o' };
-/* The first two follow from the ending of a file, the published layouts do not. */
-enum {
-    FORMAT_EXR,
-    FORMAT_NPY,
-    FORMAT_BELCOUR,
-    FORMAT_TM,
-    FORMAT_MITSUBA,
-    FORMATS,
-    FORMAT_ENDINGS = FORMAT_BELCOUR
-};
-static const char *const formats[FORMATS + 1] = {"exr", "npy", "belcour", "tm", "mitsuba", NULL};
+enum { OPTION_AXIS = 256, OPTION_FORMAT, OPTION_STACK, OPTION_INTERFACES, OPTION_FROM, OPTION_OUTPUT = 'o' };
+enum { KIND = 1, STACK = 2 }; /* modes */
 
-typedef struct table_request {
-    const char *table;
-    cli_texts axes; /* name=spec */
-    cli_settings settings;
-    size_t threads;
-    int format; /* -1: from the ending of the output file */
-    const char *output;
-    char *command; /* what determines the table, as a command line; owned */
-} table_request;
+static const char *const formats[FORMATS + 1] = {"exr", "npy", "belcour", "tm", "mitsuba", NULL};
 
 static const cli_option options[] = {
     {OPTION_OUTPUT, "output", "FILE", "where to write (required); the ending .exr or .npy picks the format",
@@ -44,7 +27,17 @@ static const cli_option options[] = {
      .silent = true},
     {OPTION_AXIS, "axis", "NAME=MIN:MAX:N[:MAP]", "nodes of one axis (default: below); may be repeated",
      CLI_LIST(table_request, axes)},
-    CLI_SETTINGS_OPTIONS(table_request, 0),
+    {OPTION_STACK, "stack", "FILE.json", "of table stack: the layers", CLI_TEXT(table_request, stack),
+     .modes = STACK},
+    {OPTION_INTERFACES, "interfaces", "all|single",
+     "of table stack: orders of scattering at each interface (default all)",
+     CLI_CHOICE(table_request, interfaces, cli_interfaces), .modes = STACK},
+    {OPTION_FROM, "from", "above|below", "of table stack: where the light comes from (default above)",
+     CLI_CHOICE(table_request, from, cli_sides), .modes = STACK},
+    CLI_NDF_OPTION(table_request, KIND),
+    CLI_SCATTERING_OPTION(table_request, KIND),
+    CLI_MASKING_OPTION(table_request, KIND),
+    CLI_TOLERANCE_OPTION(table_request, 0),
     CLI_THREADS_OPTION(table_request, 0),
     {0},
 };
@@ -213,13 +206,10 @@ static int precompute_file(const table_request *request, const lq_axis *axes) {
     return status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
 }
 
-static int precompute(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
-    lq_table *table = NULL;
-    lq_error error = {""}, write_error = {""};
-    double start = cli_seconds();
-    lq_status status = compute(request, kind, axes, &table, &error);
-    double seconds = cli_seconds() - start;
-    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return cli_fail_status(status, &error);
+int precompute_finish(const table_request *request, lq_table *table, lq_status status, const lq_error *error,
+                      double seconds) {
+    lq_error write_error = {""};
+    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return cli_fail_status(status, error);
     int code = status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
     lq_status written = write_table(request, table, &write_error);
     if (written != LQ_OK) {
@@ -228,10 +218,18 @@ static int precompute(const table_request *request, const lq_kind *kind, const l
         const char *estimate = lq_table_fact(table, "error");
         printf("%s: %zu entries, error at most %s, %.3g s\n", request->output, lq_table_entries(table),
                estimate ? estimate : "unknown", seconds);
-        if (status != LQ_OK) cli_message("%s", error.text);
+        if (status != LQ_OK) cli_message("%s", error->text);
     }
     lq_table_free(table);
     return code;
+}
+
+static int precompute(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
+    lq_table *table = NULL;
+    lq_error error = {""};
+    const double start = cli_seconds();
+    const lq_status status = compute(request, kind, axes, &table, &error);
+    return precompute_finish(request, table, status, &error, cli_seconds() - start);
 }
 
 /* ======================================================================================
@@ -244,6 +242,14 @@ static int run(int argc, char **argv) {
     lq_axis axes[LQ_MAX_AXES] = {0};
     lq_error error = {""};
     if (!read_arguments(&request, &given, argc, argv)) return CLI_FAILED;
+    if (strcmp(request.table, "stack") == 0) {
+        if (!cli_suits(&given, STACK, "for a stack") || !find_format(&request)) return CLI_FAILED;
+        request.command = cli_command(&given, &request, request.table);
+        const int code = request.command ? precompute_stack(&request) : cli_fail("out of memory");
+        free(request.command);
+        return code;
+    }
+    if (!cli_suits(&given, KIND, "for this table")) return CLI_FAILED;
     const lq_kind *kind = lq_kind_find(request.table, &error);
     if (!kind) return cli_fail("%s", error.text);
     if (!cli_settings_suit(&given, kind) || !find_format(&request)) return CLI_FAILED;
@@ -261,18 +267,22 @@ static int run(int argc, char **argv) {
 }
 
 static void print_notes(FILE *out) {
-    fprintf(out,
-            "NODES of an axis: min:max:n or min:max:n:map with map linear, sqrt (denser at min) or power2.5\n"
-            "(any exponent); one value 0.3; or a list 0,0.1,1,3. The file records how it was made and is\n"
-            "the same, bit for bit, for any number of threads. Ctrl-C leaves no file and exits 130.\n"
-            "Exit 2: written, but the error estimate is above the tolerance.\n\n");
+    fprintf(
+        out,
+        "NODES of an axis: min:max:n or min:max:n:map with map linear, sqrt (denser at min) or power2.5\n"
+        "(any exponent); one value 0.3; or a list 0,0.1,1,3. The file records how it was made and is\n"
+        "the same, bit for bit, for any number of threads. Ctrl-C leaves no file and exits 130.\n"
+        "TABLE stack is what the layers of --stack FILE.json do to light (lacquer stack), over mu and any\n"
+        "parameters of theirs: top.alpha, 2.n, base.rho, ... See docs/stacks.md.\n"
+        "Exit 2: written, but the error estimate is above the tolerance.\n\n");
     cli_print_axes(out);
 }
 
 const cli_verb cli_verb_precompute = {
     .name = "precompute",
     .summary = "a whole table, on all cores, into a file",
-    .usage = "TABLE [--axis NAME=NODES]... [options] -o FILE",
+    .usage = "TABLE [--axis NAME=NODES]... [options] -o FILE\n"
+             "stack --stack FILE.json --axis mu=NODES [--axis LAYER.NAME=NODES]... -o FILE",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
@@ -281,6 +291,8 @@ const cli_verb cli_verb_precompute = {
                 "lacquer precompute fgd --axis mu=0:1:32:sqrt --axis n=0.2 --axis kappa=3.9 -o silver.exr\n"
                 "lacquer precompute dfg --tolerance 1e-7 -o dfg.npy\n"
                 "lacquer precompute tir-pass --format belcour -o TIR.bin\n"
-                "lacquer precompute transmission --format mitsuba -o ggx.dat",
+                "lacquer precompute transmission --format mitsuba -o ggx.dat\n"
+                "lacquer precompute stack --stack recipes/stacks/frosted-metal.json --axis mu=0:1:64 "
+                "--axis top.alpha=0:1:64 -o frosted.exr",
     .run = run,
 };
