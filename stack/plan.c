@@ -9,36 +9,6 @@
 #include "stack/description.h"
 #include "system/status.h"
 
-/* ======================================================================================
- *                                     What is refused
- * ====================================================================================== */
-
-static const char *unsolved(const lq_layer *layer) {
-    for (int i = 0; i < LQ_PARAMETERS; i++)
-        if ((lq_parameters[i].layers >> layer->type & 1) &&
-            ((const lq_quantity *)(const void *)((const char *)layer + lq_parameters[i].offset))->form ==
-                LQ_RANGE)
-            return "has a range; accepted: a number or [r, g, b]";
-    if (layer->anisotropic) return "is anisotropic; accepted: one alpha";
-    if (layer->type == LQ_LAYER_DIELECTRIC && lq_medium_scatters(&layer->medium))
-        return "has a medium that scatters; accepted: tau, or sigma_s = 0";
-    return NULL;
-}
-
-static lq_status check(const lq_stack *stack, bool from_below, lq_error *error) {
-    for (size_t i = 0; i < stack->layer_count; i++) {
-        const char *why = unsolved(&stack->layers[i]);
-        if (why) return lq_fail(error, LQ_BAD_INPUT, "layer %zu %s", i + 1, why);
-    }
-    const lq_layer_type last = stack->layers[stack->layer_count - 1].type;
-    if (from_below && last != LQ_LAYER_DIELECTRIC)
-        return lq_fail(error, LQ_BAD_INPUT,
-                       "light from below a %s base; accepted: a stack that ends with a "
-                       "dielectric",
-                       lq_layer_type_name(last));
-    return LQ_OK;
-}
-
 int lq_stack_channels(const lq_stack *stack) {
     for (size_t i = 0; i < stack->layer_count; i++)
         for (int p = 0; p < LQ_PARAMETERS; p++)
@@ -271,7 +241,7 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
 lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
                        lq_error *error) {
     *plan = (lq_plan){.channels = lq_stack_channels(stack)};
-    lq_status status = check(stack, from_below, error);
+    lq_status status = lq_stack_solvable(stack, from_below, error);
     if (status != LQ_OK) return status;
     const size_t most = (stack->layer_count + 1) * (size_t)plan->channels;
     plan->surface = calloc(most, sizeof *plan->surface);

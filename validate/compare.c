@@ -17,7 +17,7 @@ double lq_z_limit(size_t comparisons) {
     return high;
 }
 
-static double score(const lq_compared *point) {
+double lq_compared_score(const lq_compared *point) {
     const double d = point->value - point->reference;
     const double excess = fabs(d) - point->allowance;
     if (isnan(excess) || isnan(point->noise)) return INFINITY;
@@ -38,7 +38,7 @@ static double percentile99(double *sizes, size_t count) {
 
 static void add(lq_comparison *r, const lq_compared *point, size_t i, double *size) {
     const double d = point->value - point->reference;
-    const double z = score(point);
+    const double z = lq_compared_score(point);
     *size = isnan(d) ? INFINITY : fabs(d);
     if (*size > r->max || i == 0) {
         r->max = *size;

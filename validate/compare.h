@@ -12,6 +12,8 @@ typedef struct lq_compared {
 
 /* d is value - reference. The score z of a point is what exceeds the allowance, in standard errors:
  * z = sign(d) (|d| - allowance)+ / noise. Where everything is in order |z| is at most a normal deviate. */
+double lq_compared_score(const lq_compared *point);
+
 typedef struct lq_comparison {
     size_t count;
     double max, rms, mean, p99; /* of |d|, d^2, d and |d|: largest, root mean square, bias, percentile */

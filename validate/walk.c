@@ -40,14 +40,6 @@ static double fresnel(const lq_walk *walk, double cosine) {
     return walk->f0 + (walk->f90 - walk->f0) * square * square * rest;
 }
 
-/* Weights below this play Russian roulette: what they can still add is not worth a step each. */
-static const double faint = 0.05;
-
-static void roulette(lq_ray *ray, lq_stream *stream) {
-    if (ray->weight >= faint) return;
-    ray->weight = lq_stream_uniform(stream) * faint < ray->weight ? faint : 0.0;
-}
-
 static void sample_reflect(const void *data, lq_stream *stream, double *values) {
     const context *c = data;
     const lq_walk *walk = c->walk;
@@ -66,7 +58,7 @@ static void sample_reflect(const void *data, lq_stream *stream, double *values) 
             if (order <= c->order_count) values[order] = ray.weight;
             return;
         }
-        roulette(&ray, stream);
+        lq_ray_roulette(&ray, stream);
     }
 }
 

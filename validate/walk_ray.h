@@ -42,6 +42,24 @@ static inline double lq_ray_incidence(const lq_walk *walk, lq_stream *stream) {
     return walk->cosine ? sqrt(lq_stream_uniform(stream)) : walk->mu;
 }
 
+/* tau^(1/z); tau = 1 costs nothing even at grazing. */
+static inline double lq_ray_crossing(double log_tau, double z) {
+    return log_tau == 0.0 ? 1.0 : exp(log_tau / z);
+}
+
+/* The depth of the same height seen from the other side; at most that of u = 1e-300. */
+static inline double lq_ray_flip_depth(double t) {
+    const double flipped = t < 0.69 ? -log(-expm1(-t)) : -log1p(-exp(-t));
+    return fmin(flipped, 690.0);
+}
+
+/* Weights below `faint` play Russian roulette: what they can still add is not worth a step each. */
+static inline void lq_ray_roulette(lq_ray *ray, lq_stream *stream) {
+    const double faint = 0.05;
+    if (ray->weight >= faint) return;
+    ray->weight = lq_stream_uniform(stream) * faint < ray->weight ? faint : 0.0;
+}
+
 /* Mirror reflection of the direction -v about the facet. */
 static inline void lq_ray_reflect(lq_ray *ray, const lq_facet *facet) {
     const double twice = 2.0 * facet->cosine;

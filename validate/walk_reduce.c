@@ -73,3 +73,15 @@ lq_status lq_walk_reduce(const lq_walk *walk, lq_walk_sample *sample, const void
     free(blocks);
     return LQ_OK;
 }
+
+/* The delta method, with 2 cov = var(x + y) - var x - var y. */
+lq_walk_mean lq_walk_ratio(lq_walk_mean y, lq_walk_mean x, lq_walk_mean sum) {
+    lq_walk_mean r = {0.0, 0.0};
+    if (x.mean <= 0.0) return r;
+    r.mean = y.mean / x.mean;
+    const double vx = x.error * x.error, vy = y.error * y.error;
+    const double covariance = 0.5 * (sum.error * sum.error - vx - vy);
+    const double variance = vy - 2.0 * r.mean * covariance + r.mean * r.mean * vx;
+    r.error = sqrt(fmax(variance, 0.0)) / x.mean;
+    return r;
+}

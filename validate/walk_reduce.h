@@ -15,4 +15,8 @@ typedef void lq_walk_sample(const void *context, lq_stream *stream, double *valu
 lq_status lq_walk_reduce(const lq_walk *walk, lq_walk_sample *sample, const void *context, size_t count,
                          lq_walk_mean *means, lq_error *error);
 
+/* y/x of two means and its error; `sum` is the mean of x + y, whose error tells their covariance. 0 where
+ * there is no x. */
+lq_walk_mean lq_walk_ratio(lq_walk_mean y, lq_walk_mean x, lq_walk_mean sum);
+
 #endif

@@ -31,17 +31,6 @@ typedef struct context {
 /* What a sample writes. The sums with sin^2 added give the covariance that the error of a ratio needs. */
 enum { ENERGY, SIN2 = 2, SUM = 4, VALUES = 6 };
 
-/* tau^(1/z); tau = 1 costs nothing even at grazing. */
-static double crossing(double log_tau, double z) {
-    return log_tau == 0.0 ? 1.0 : exp(log_tau / z);
-}
-
-/* The depth of the same height seen from the other side; at most that of u = 1e-300. */
-static double flip_depth(double t) {
-    const double flipped = t < 0.69 ? -log(-expm1(-t)) : -log1p(-exp(-t));
-    return fmin(flipped, 690.0);
-}
-
 /* Refraction through the facet, then into the frame of the other side. */
 static void refract(branch *b, const lq_facet *facet, double eta, double cos_t) {
     const double normal = facet->cosine / eta - cos_t;
@@ -49,7 +38,7 @@ static void refract(branch *b, const lq_facet *facet, double eta, double cos_t) 
     const double y = normal * facet->y;
     b->ray.z = -(b->ray.z / eta + normal * facet->z);
     b->ray.s = sqrt(x * x + y * y);
-    b->ray.t = flip_depth(b->ray.t);
+    b->ray.t = lq_ray_flip_depth(b->ray.t);
     b->side = 1 - b->side;
 }
 
@@ -77,7 +66,7 @@ static bool hit(const context *c, branch *b, branch *other, lq_stream *stream) {
 }
 
 static void leave(const context *c, const branch *b, double *values) {
-    const double energy = b->ray.weight * crossing(c->log_tau[b->side], b->ray.z);
+    const double energy = b->ray.weight * lq_ray_crossing(c->log_tau[b->side], b->ray.z);
     const double sin2 = b->ray.s * b->ray.s;
     values[ENERGY + b->side] += energy;
     values[SIN2 + b->side] += energy * sin2;
@@ -105,7 +94,7 @@ static void follow(const context *c, branch *stack, lq_stream *stream, double *v
 }
 
 static void finish(const context *c, double mu, double *values) {
-    const double in = crossing(c->log_tau[0], mu);
+    const double in = lq_ray_crossing(c->log_tau[0], mu);
     for (int i = 0; i < SUM; i++) values[i] *= in;
     for (int side = 0; side < 2; side++) values[SUM + side] = values[ENERGY + side] + values[SIN2 + side];
 }
@@ -132,18 +121,6 @@ static void sample_smooth(const void *data, lq_stream *stream, double *values) {
     leave(c, &near, values);
     leave(c, &far, values);
     finish(c, mu, values);
-}
-
-/* y/x of two means; its error by the delta method, with 2 cov = var(x + y) - var x - var y. */
-static lq_walk_mean ratio(lq_walk_mean y, lq_walk_mean x, lq_walk_mean sum) {
-    lq_walk_mean r = {0.0, 0.0};
-    if (x.mean <= 0.0) return r;
-    r.mean = y.mean / x.mean;
-    const double vx = x.error * x.error, vy = y.error * y.error;
-    const double covariance = 0.5 * (sum.error * sum.error - vx - vy);
-    const double variance = vy - 2.0 * r.mean * covariance + r.mean * r.mean * vx;
-    r.error = sqrt(fmax(variance, 0.0)) / x.mean;
-    return r;
 }
 
 /* An interface between equal media is none, however often a grazing ray would have to cross it. */
@@ -174,8 +151,8 @@ lq_status lq_walk_two_sided(const lq_walk *walk, lq_walk_sides *sides, lq_error 
     if (status != LQ_OK) return status;
     sides->reflected = m[ENERGY];
     sides->transmitted = m[ENERGY + 1];
-    sides->reflected_sin2 = ratio(m[SIN2], m[ENERGY], m[SUM]);
-    sides->transmitted_sin2 = ratio(m[SIN2 + 1], m[ENERGY + 1], m[SUM + 1]);
+    sides->reflected_sin2 = lq_walk_ratio(m[SIN2], m[ENERGY], m[SUM]);
+    sides->transmitted_sin2 = lq_walk_ratio(m[SIN2 + 1], m[ENERGY + 1], m[SUM + 1]);
     return LQ_OK;
 }
 

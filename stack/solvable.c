@@ -1,0 +1,29 @@
+/* solvable.c - which stacks are not solved, nor walked: one set of words for both. */
+#include "stack/description.h"
+#include "system/status.h"
+
+static const char *unsolved(const lq_layer *layer) {
+    for (int i = 0; i < LQ_PARAMETERS; i++)
+        if ((lq_parameters[i].layers >> layer->type & 1) &&
+            ((const lq_quantity *)(const void *)((const char *)layer + lq_parameters[i].offset))->form ==
+                LQ_RANGE)
+            return "has a range; accepted: a number or [r, g, b]";
+    if (layer->anisotropic) return "is anisotropic; accepted: one alpha";
+    if (layer->type == LQ_LAYER_DIELECTRIC && lq_medium_scatters(&layer->medium))
+        return "has a medium that scatters; accepted: tau, or sigma_s = 0";
+    return NULL;
+}
+
+lq_status lq_stack_solvable(const lq_stack *stack, bool from_below, lq_error *error) {
+    for (size_t i = 0; i < stack->layer_count; i++) {
+        const char *why = unsolved(&stack->layers[i]);
+        if (why) return lq_fail(error, LQ_BAD_INPUT, "layer %zu %s", i + 1, why);
+    }
+    const lq_layer_type last = stack->layers[stack->layer_count - 1].type;
+    if (from_below && last != LQ_LAYER_DIELECTRIC)
+        return lq_fail(error, LQ_BAD_INPUT,
+                       "light from below a %s base; accepted: a stack that ends with a "
+                       "dielectric",
+                       lq_layer_type_name(last));
+    return LQ_OK;
+}
