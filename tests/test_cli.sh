@@ -104,6 +104,7 @@ good() { # NAME VALUE
     range) echo 0.1:0.5 ;;
     on) echo mu=0.1:0.5 ;;
     ndf) echo ggx ;;
+    mu) echo 0.5 ;;
     *)
         case $2 in
         ?) echo 2 ;;
@@ -148,14 +149,17 @@ idle fit report texture snippet family range points norm loss -- anisotropic -o 
 idle fit report texture snippet family range points norm loss samples -- transmitted -o /proc/x
 tries=
 certificate='certificate on table parts junit report'
+light='mu interfaces from'
 idle bench csv svg full scattering masking -- --report /proc/x
 idle validate against layout kind axes diagnose samples points seed budget $certificate \
-    scattering masking tolerance -- hard-cases
-idle validate against layout kind diagnose samples $certificate ndf scattering masking tolerance -- \
+    scattering masking tolerance $light -- hard-cases
+idle validate against layout kind axes diagnose points budget $certificate ndf scattering masking -- \
+    stack files/empty
+idle validate against layout kind diagnose samples $certificate ndf scattering masking tolerance $light -- \
     files/empty --axes files/empty
-idle validate layout kind samples $certificate ndf scattering masking tolerance -- files/empty --diagnose
-idle validate samples $certificate -- files/empty --layout tm --kind fgd
-idle validate ndf scattering masking tolerance kind -- files/empty
+idle validate layout kind samples $certificate ndf scattering masking tolerance $light -- files/empty --diagnose
+idle validate samples $certificate $light -- files/empty --layout tm --kind fgd
+idle validate ndf scattering masking tolerance kind $light -- files/empty
 refused 'no arguments' list fgd
 
 # -------------------------------------------------------------------------------------- eval

@@ -4,33 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "program/light.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/verb.h"
 
-enum {
-    OPTION_MU = 256,
-    OPTION_FORMAT,
-    OPTION_INTERFACES,
-    OPTION_PATHS,
-    OPTION_FROM,
-    OPTION_TOLERANCE,
-    OPTION_TRUST
-};
+enum { OPTION_FORMAT = 256, OPTION_PATHS, OPTION_TOLERANCE, OPTION_TRUST };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 enum { MAX_PATHS = 64 };
 
-typedef struct stack_cosines {
-    size_t count;
-    double mu[STACK_COSINES_MAX];
-} stack_cosines;
-
 typedef struct stack_request {
     const char *path;
-    stack_cosines cosines;
-    int format, interfaces, from;
+    cli_light light;
+    int format;
     size_t paths, threads;
     double tolerance;
     bool trusted;
@@ -38,40 +26,14 @@ typedef struct stack_request {
 
 static const char *const formats[] = {"text", "csv", "json", NULL};
 
-/* Cosines separated by commas. */
-static bool read_cosines(void *field, const char *value) {
-    stack_cosines *cosines = field;
-    cosines->count = 0;
-    for (const char *at = value;; at++) {
-        char text[64];
-        const size_t length = strcspn(at, ",");
-        if (length >= sizeof text || cosines->count == STACK_COSINES_MAX) {
-            cli_message("--mu: accepted: up to %d cosines in [0,1] separated by commas", STACK_COSINES_MAX);
-            return false;
-        }
-        memcpy(text, at, length);
-        text[length] = '\0';
-        if (!cli_parse_number("--mu", text, 0.0, 1.0, &cosines->mu[cosines->count++])) return false;
-        at += length;
-        if (*at == '\0') return true;
-    }
-}
-
 static const cli_option options[] = {
-    {OPTION_MU, "mu", "MU,...",
-     "cosines of incidence, in the medium the light comes from (default 1,0.6,0.15)",
-     CLI_READ(stack_request, cosines, read_cosines)},
+    CLI_LIGHT_OPTIONS(stack_request, 0),
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
-    {OPTION_INTERFACES, "interfaces", "all|single",
-     "orders of scattering at each interface; single: what is blocked after one is lost (default all)",
-     CLI_CHOICE(stack_request, interfaces, cli_interfaces)},
-    {OPTION_FROM, "from", "above|below", "where the light comes from (default above)",
-     CLI_CHOICE(stack_request, from, cli_sides)},
     {OPTION_PATHS, "paths", "N", "split light by how often it met the first interface: 1, 2, ... N or more",
      CLI_COUNT(stack_request, paths, 1, MAX_PATHS)},
     {OPTION_TOLERANCE, "tolerance", "T", "absolute error of every number (default 1e-4)",
-     CLI_NUMBER(stack_request, tolerance, 1e-7, 0.1)},
+     CLI_NUMBER(stack_request, tolerance, CLI_STACK_TOLERANCE_MIN, CLI_STACK_TOLERANCE_MAX)},
     {OPTION_TRUST, "allow-plugin", NULL, "open the NDF files and run the plugins that the stack names",
      CLI_FLAG(stack_request, trusted)},
     CLI_THREADS_OPTION(stack_request, 0),
@@ -96,13 +58,10 @@ static int print(const stack_request *request, const stack_result *result) {
 }
 
 static int solve(const stack_request *request, const lq_stack *stack) {
-    const lq_stack_query query = {.mu = request->cosines.mu,
-                                  .mu_count = request->cosines.count,
-                                  .from_below = request->from == 1,
-                                  .single = request->interfaces == 1,
-                                  .paths = request->paths,
-                                  .tolerance = request->tolerance,
-                                  .threads = (int)request->threads};
+    lq_stack_query query = cli_light_query(&request->light);
+    query.paths = request->paths;
+    query.tolerance = request->tolerance;
+    query.threads = (int)request->threads;
     const int channels = lq_stack_channels(stack);
     const size_t paths = request->paths ? request->paths : 1;
     lq_stack_light *light = calloc(query.mu_count * (size_t)channels * paths, sizeof *light);
@@ -120,7 +79,7 @@ static int solve(const stack_request *request, const lq_stack *stack) {
 }
 
 static int run(int argc, char **argv) {
-    stack_request request = {.cosines = {3, {1.0, 0.6, 0.15}}};
+    stack_request request = {.light = cli_light_default()};
     cli_given given;
     lq_error error = {""};
     lq_stack *stack = NULL;

@@ -4,8 +4,6 @@
 
 #include "lacquer.h"
 
-enum { STACK_COSINES_MAX = 256 };
-
 /* Light of one query, as lq_stack_solve gives it. */
 typedef struct stack_result {
     const lq_stack *stack;

@@ -38,7 +38,11 @@ static void print_notes(FILE *out) {
         "A certificate (--certificate, a budget by norm, --on, --junit, --report) takes 100000 exact values\n"
         "anywhere between the nodes, uniform over the axes, searches for the worst point, states the\n"
         "confidence of p99 and of the largest error, and checks physics; FILE is a table or the factors\n"
-        "of one, DIR a folder of them. docs/certificates.md describes it and the budget file.\n");
+        "of one, DIR a folder of them. docs/certificates.md describes it and the budget file.\n\n"
+        "stack FILE.json compares what `lacquer stack` says with random walks of single rays, --samples N a\n"
+        "cosine and channel: energies, sin2, mean and across of the light on both sides. z is what a\n"
+        "difference exceeds the solver's error estimate by, in standard errors of the walk. Exit code 2: z\n"
+        "is larger than chance explains, or the solver did not reach --tolerance (default 1e-4).\n");
 }
 
 /* Modes. */
@@ -50,7 +54,8 @@ enum {
     DESCRIBED = 16,  /* anybody's, --axes */
     DIAGNOSED = 32,  /* --diagnose */
     CERTIFIED = 64,  /* a certificate */
-    HARD_CASES = 128 /* no file at all */
+    HARD_CASES = 128, /* no file at all */
+    STACKED = 256     /* a stack's description, against walks */
 };
 
 static bool read_against(void *field, const char *text) {
@@ -98,37 +103,44 @@ static const cli_option options[] = {
     {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong",
      CLI_FLAG(validate_request, diagnose), .modes = DIAGNOSED},
     {SAMPLES, "samples", "N", "random walks per point (default 100000)",
-     CLI_COUNT(validate_request, samples, 2, (double)LQ_WALK_MAX_SAMPLES), .modes = WALKED},
+     CLI_COUNT(validate_request, samples, 2, (double)LQ_WALK_MAX_SAMPLES), .modes = WALKED | STACKED},
     {POINTS, "points", "P", "points, half of them stored entries (default 256)",
-     CLI_COUNT(validate_request, points, 2, 10000000), .modes = ~(unsigned)HARD_CASES},
+     CLI_COUNT(validate_request, points, 2, 10000000), .modes = ~(unsigned)(HARD_CASES | STACKED)},
     {SEED, "seed", "S", "of the points and of the walks (default 1)",
      CLI_COUNT(validate_request, seed, 0, (double)SIZE_MAX), .modes = ~(unsigned)HARD_CASES},
     {BUDGET, "budget", "E|max=E,p99=E|FILE",
      "largest error that stored and interpolated values may have; by norm, or a budget file: certify",
-     .type = CLI_TYPE_READ, .read = read_budget, .modes = ~(unsigned)HARD_CASES},
+     .type = CLI_TYPE_READ, .read = read_budget, .modes = ~(unsigned)(HARD_CASES | STACKED)},
     CERTIFY_OPTIONS,
     {FORMAT, "format", "text|json", "of the report (default text)",
      CLI_CHOICE(validate_request, format, formats)},
     {JSON, "json", NULL, "the same as --format json", CLI_FLAG(validate_request, json)},
-    CLI_NDF_OPTION(validate_request, 0),
+    CLI_NDF_OPTION(validate_request, ~(unsigned)STACKED),
     CLI_ALLOW_PLUGIN_OPTION(validate_request, ~(unsigned)(PUBLISHED | HARD_CASES)),
     CLI_SCATTERING_OPTION(validate_request, PUBLISHED),
     CLI_MASKING_OPTION(validate_request, PUBLISHED),
-    CLI_TOLERANCE_OPTION(validate_request, PUBLISHED),
+    CLI_TOLERANCE_OPTION(validate_request, PUBLISHED | STACKED),
+    CLI_LIGHT_OPTIONS(validate_request, STACKED),
     CLI_THREADS_OPTION(validate_request, 0),
     {0},
 };
 
-static bool take_word(void *user, const char *word) {
-    validate_request *request = user;
-    if (request->file) cli_message("one FILE at a time: '%s' after '%s'", word, request->file);
-    else request->file = word;
-    return request->file == word;
-}
-
-/* The word that stands in place of FILE; a file of that name is ./hard-cases. */
+/* The words that stand in place of FILE; files of such names are ./hard-cases and ./stack. */
 static bool is_hard_cases(const validate_request *request) {
     return strcmp(request->file, "hard-cases") == 0;
+}
+
+static bool is_stack(const validate_request *request) {
+    return strcmp(request->file, "stack") == 0;
+}
+
+static bool take_word(void *user, const char *word) {
+    validate_request *request = user;
+    const bool layers = request->file && is_stack(request);
+    if (layers && !request->stack) request->stack = word;
+    else if (request->file) cli_message("one FILE at a time: '%s' after '%s'", word, layers ? request->stack : request->file);
+    else request->file = word;
+    return request->file == word || request->stack == word;
 }
 
 /* The mode asked for, in words as well. */
@@ -139,6 +151,7 @@ static unsigned mode_of(const validate_request *request, const char **where) {
         const char *where;
     } modes[] = {
         {is_hard_cases(request), HARD_CASES, "for hard-cases: every case has its own limit"},
+        {is_stack(request), STACKED, "for a stack, whose description says what it is"},
         {request->axes, DESCRIBED, "with --axes, which says how FILE was made"},
         {request->diagnose, DIAGNOSED, "with --diagnose, which is for FILE alone"},
         {request->other, OTHERS, "with --against OTHER"},
@@ -155,7 +168,7 @@ static unsigned mode_of(const validate_request *request, const char **where) {
 /* What FILE records may be named where FILE says how it was made; an NDF that opens nothing is not read. */
 static bool names_nothing(const validate_request *request, unsigned mode) {
     const char *ndf;
-    return request->trust.ndf && !(mode & (PUBLISHED | HARD_CASES)) &&
+    return request->trust.ndf && !(mode & (PUBLISHED | HARD_CASES | STACKED)) &&
            lq_ndf_trusted(request->trust.ndf, NULL, &ndf, NULL) == LQ_OK;
 }
 
@@ -177,6 +190,7 @@ static bool suits(const validate_request *request, const cli_given *given) {
 static bool parse(validate_request *request, int argc, char **argv) {
     *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
     request->settings = cli_settings_default();
+    request->light = cli_light_default();
     request->certify.budgets.count = 1;
     if (!cli_parse(&cli_verb_validate, argc, argv, request, take_word, &request->given)) return false;
     request->points_given = cli_given_text(&request->given, POINTS) != NULL;
@@ -186,6 +200,8 @@ static bool parse(validate_request *request, int argc, char **argv) {
     for (int id = CERTIFY_FIRST; id <= CERTIFY_LAST; id++)
         request->certify.wanted |= cli_given_text(&request->given, id) != NULL;
     if (!request->file) cli_message("FILE is missing; see `lacquer validate --help`");
+    else if (is_stack(request) && !request->stack)
+        cli_message("no stack; usage: lacquer validate stack FILE.json [options]");
     else
         return (!request->certify.junit || cli_output_check(request->certify.junit)) &&
                suits(request, &request->given);
@@ -244,6 +260,7 @@ static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
+    if (job.request.stack) return validate_stack(&job.request);
     if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
     if (job.request.other || job.request.layout >= 0 || job.request.axes || job.request.diagnose)
         return validate_against(&job.request);
@@ -267,7 +284,7 @@ static int run(int argc, char **argv) {
 const cli_verb cli_verb_validate = {
     .name = "validate",
     .summary = "check a stored table against the exact solver and random walks",
-    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]",
+    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]\nstack FILE.json [options]",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
@@ -280,6 +297,7 @@ const cli_verb cli_verb_validate = {
                 "lacquer validate TIR.bin --layout belcour --kind tir-pass\n"
                 "lacquer validate theirs.npy --axes theirs.json\n"
                 "lacquer validate fgd.exr --diagnose\n"
-                "lacquer validate hard-cases",
+                "lacquer validate hard-cases\n"
+                "lacquer validate stack recipes/stacks/frosted-metal.json --samples 1000000 --mu 1,0.3",
     .run = run,
 };

@@ -2,6 +2,7 @@
 #ifndef LACQUER_PROGRAM_VALIDATE_VALIDATE_H
 #define LACQUER_PROGRAM_VALIDATE_VALIDATE_H
 
+#include "program/light.h"
 #include "program/options.h"
 #include "program/progress.h"
 #include "program/settings.h"
@@ -31,6 +32,8 @@ typedef struct validate_request {
     certify_request certify;
     const char *axes; /* a JSON text that says what FILE, of anybody's, is */
     bool diagnose;    /* FILE of this program, all of it, by the same report */
+    const char *stack; /* the description of one, against walks; `file` is the word "stack" */
+    cli_light light;   /* what meets it */
 } validate_request;
 
 /* The lists, in the order they are reported. */
@@ -68,6 +71,9 @@ int validate_against(const validate_request *request);
 
 /* The whole of `validate hard-cases`; returns the exit code. */
 int validate_hard_cases(const validate_request *request);
+
+/* The whole of `validate stack FILE.json`; returns the exit code. */
+int validate_stack(const validate_request *request);
 
 /* Draw the points, compute everything at each and reduce the lists. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);
