@@ -6,6 +6,12 @@
 
 static const double two_pi = 6.28318530717958647692;
 
+/* Grazing light only touches the tips of the surface. Of a conductor a cosine of 0 has a limit, for which the
+ * least number stands. What is refracted at a tip leaves again with a chance that goes like mu^Lambda: no
+ * number is small enough for that limit, and cosines below 1e-6 are taken for it, as in the tables of
+ * two-sided scattering. */
+static const double NO_COSINE = 1e-300, GRAZING = 1e-6;
+
 /* Sets the direction of travel. Its length is mended at every hit: a path of a million must not drift. */
 static void head(lq_traveller *t, double x, double y, double z) {
     const double scale = 1.0 / sqrt(x * x + y * y + z * z);
@@ -67,8 +73,7 @@ static void leave_at_once(const lq_walk_interface *f, lq_traveller *t) {
 static void meet_rough(const lq_walk_interface *f, lq_traveller *t, lq_stream *stream) {
     lq_ray *ray = &t->ray;
     ray->t = 0.0;
-    /* Grazing light only touches the tips of the surface; a cosine of 0 stands for the limit. */
-    ray->z = fmin(ray->z, -1e-300);
+    ray->z = fmin(ray->z, f->opaque ? -NO_COSINE : -GRAZING);
     lq_ray_descend(ray, f->ndf, f->alpha, stream);
     while (ray->weight > 0.0 && t->hits_left > 0) {
         const lq_facet m = draw_facet(f, t, stream);
