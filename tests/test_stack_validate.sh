@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# `lacquer validate stack`: solver and walks agree on the stacks that come along, and mistakes are one line.
+set -euo pipefail
+: "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?root of the sources}"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+stacks=$LACQUER_SOURCE/recipes/stacks
+failures=0
+
+fail() {
+    echo "FAIL: $*" >&2
+    failures=$((failures + 1))
+}
+
+# run CODE ARGUMENTS...: out, err hold what it printed.
+run() {
+    local code=$1 got=0
+    shift
+    "$LACQUER" "$@" >out 2>err || got=$?
+    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat out err)"
+}
+
+# refused PATTERN ARGUMENTS...: exit 1, one line on stderr that matches, nothing on stdout.
+refused() {
+    local pattern=$1
+    shift
+    run 1 "$@"
+    [ "$(wc -l <err)" -eq 1 ] || fail "lacquer $*: not one line: $(cat err)"
+    grep -qE -e "$pattern" err || fail "lacquer $*: '$(cat err)' does not match '$pattern'"
+    [ ! -s out ] || fail "lacquer $*: printed on stdout"
+}
+
+says() {
+    grep -qE -e "$1" out || fail "no '$1' in: $(cat out)"
+}
+
+# ------------------------------------------------------------------------------------- in order
+run 0 validate stack "$stacks/frosted-metal.json" --samples 50000
+says '^frosted-metal: interfaces all, light from above, walks of 50000 samples, seed 1$'
+says '^0\.15 +reflected +across +0\.13[0-9]+ '
+[ "$(grep -c ' reflected ' out)" -eq 12 ] || fail "not four quantities at three cosines: $(cat out)"
+grep -q transmitted out && fail "an opaque stack transmits"
+says '^passed$'
+[ ! -s err ] || fail "validate stack wrote to stderr: $(cat err)"
+
+# the report does not depend on the threads, but on the seed
+mv out first
+run 0 validate stack "$stacks/frosted-metal.json" --samples 50000 --threads 1
+cmp -s first out || fail "one thread changes the report"
+run 0 validate stack "$stacks/frosted-metal.json" --samples 50000 --seed 2
+cmp -s first out && fail "the seed changes nothing"
+
+run 0 validate stack "$stacks/slab.json" --from below --interfaces single --mu 1,0.3 --samples 50000 --json
+says '"from": "below"'
+says '"interfaces": "single"'
+says '"passed": true'
+[ "$(grep -c '"z":' out)" -eq 16 ] || fail "not eight quantities at two cosines: $(cat out)"
+run 0 validate stack "$stacks/varnished-base.json" --mu 0,0.02,0.5 --tolerance 1e-3 --samples 50000
+
+echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}, "medium": {"tau": [0.8, 0.5, 0.3]}},
+    {"lambertian": {"rho": 0.5}}]}' >stack
+run 0 validate stack stack --mu 0.5 --samples 20000
+says '^0\.5 +2 reflected +energy '
+
+# ------------------------------------------------------------------------------------- mistakes
+refused 'no stack; usage' validate stack
+refused "one FILE at a time: 'b' after 'a'" validate stack a b
+refused 'missing.json' validate stack missing.json
+refused "stack: .*EXR" validate ./stack
+refused 'accepts 1e-07 to 0.1, not 0.5' validate stack stack --tolerance 0.5
+refused "mu.*'2' is not a number from 0 to 1" validate stack stack --mu 0.5,2
+refused 'light from below a lambertian base' validate stack stack --from below
+refused '--points has no effect for a stack' validate stack stack --points 4
+refused '--ndf has no effect for a stack' validate stack stack --ndf ggx
+refused '--mu has no effect' validate x.exr --mu 0.5
+echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": {"x": 0.1, "y": 0.2}}}]}' >stack
+refused 'layer 1 is anisotropic; accepted: one alpha' validate stack stack
+
+exit "$failures"
