@@ -647,16 +647,16 @@ lq_status lq_stack_precompute(const lq_stack *stack, const lq_stack_query *query
 /* ---- The same by chance ---- */
 
 typedef struct lq_stack_walked {
-    lq_stack_light light;                         /* means over the walks; its `error` is what they did not follow */
+    lq_stack_light light; /* means over the walks; its `error` is what they did not follow */
     lq_stack_lobe reflected_noise, transmitted_noise; /* standard errors of these means */
 } lq_stack_walked;
 
 enum { LQ_STACK_WALK_PATHS = 4 };
 
-/* Random walks of single rays, an independent check of lq_stack_solve: it takes the same queries (their tolerance
- * aside; paths up to LQ_STACK_WALK_PATHS), refuses the same stacks and numbers its results the same way. These
- * depend on `seed` and `samples` (at least 2), never on threads. A ray is given up after a million hits; it is
- * missing from every mean, and `light.error` is the energy that such rays carried. */
+/* Random walks of single rays, an independent check of lq_stack_solve: it takes the same queries (their
+ * tolerance aside; paths up to LQ_STACK_WALK_PATHS), refuses the same stacks and numbers its results the same
+ * way. These depend on `seed` and `samples` (at least 2), never on threads. A ray is given up after a million
+ * hits; it is missing from every mean, and `light.error` is the energy that such rays carried. */
 lq_status lq_stack_walk(const lq_stack *stack, const lq_stack_query *query, size_t samples, size_t seed,
                         lq_stack_walked *walked, const lq_progress *progress, lq_error *error);
 

@@ -39,7 +39,8 @@ lq_layer lq_layer_default(lq_layer_type type);
 double lq_medium_transmittance(const lq_medium *medium, int channel);
 bool lq_medium_scatters(const lq_medium *medium);
 
-/* LQ_BAD_INPUT: an anisotropic interface, a medium that scatters, a range, or light from below an opaque base. */
+/* LQ_BAD_INPUT: an anisotropic interface, a medium that scatters, a range, or light from below an opaque
+ * base. */
 lq_status lq_stack_solvable(const lq_stack *stack, bool from_below, lq_error *error);
 
 #endif

@@ -74,7 +74,7 @@ static void test_published(void **state) {
                    {0.0, .64862, .89774},
                    {.585676, .402038, .155681}}};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-        const lq_stack_query query = {.mu = mu, .mu_count = COSINES, .interfaces = LQ_MULTIPLE};
+        const lq_stack_query query = {.mu = mu, .mu_count = COSINES};
         const char *text = values[i].text;
         lq_stack_walked w[COSINES];
         walk(text, &query, SAMPLES, w);
@@ -93,7 +93,7 @@ static void test_published(void **state) {
 /* Nothing absorbs: every path comes back, and all of it, however long it takes. */
 static void test_lossless(void **state) {
     (void)state;
-    const lq_stack_query query = {.mu = mu, .mu_count = COSINES, .interfaces = LQ_MULTIPLE};
+    const lq_stack_query query = {.mu = mu, .mu_count = COSINES};
     lq_stack_walked w[COSINES];
     walk(LOSSLESS, &query, 50000, w);
     for (int m = 0; m < COSINES; m++) {
@@ -113,7 +113,7 @@ static void test_smooth(void **state) {
     static const char text[] =
         "{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": 0}, \"medium\": {\"tau\": 0.5}},"
         "{\"conductor\": {\"n\": 0.2, \"kappa\": 3.9, \"alpha\": 0}}]}";
-    const lq_stack_query query = {.mu = mu, .mu_count = COSINES, .interfaces = LQ_MULTIPLE, .paths = 2};
+    const lq_stack_query query = {.mu = mu, .mu_count = COSINES, .paths = 2};
     lq_stack_walked w[2 * COSINES];
     walk(text, &query, SAMPLES, w);
     for (int m = 0; m < 2 * COSINES; m++) {
@@ -132,7 +132,7 @@ static void test_absorbed_from_below(void **state) {
     (void)state;
     static const char text[] =
         "{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": 0}, \"medium\": {\"tau\": 0.5}}]}";
-    const lq_stack_query query = {.mu = mu, .mu_count = 1, .from_below = true, .interfaces = LQ_MULTIPLE};
+    const lq_stack_query query = {.mu = mu, .mu_count = 1, .from_below = true};
     lq_stack_walked w[1];
     walk(text, &query, SAMPLES, w);
     assert_agrees(w[0].light.reflected.energy, w[0].reflected_noise.energy, 0.0, 0.04 * 0.25, 0.0,
@@ -143,8 +143,7 @@ static void test_absorbed_from_below(void **state) {
 
 static void test_threads_do_not_matter(void **state) {
     (void)state;
-    lq_stack_query query = {
-        .mu = mu, .mu_count = COSINES, .interfaces = LQ_MULTIPLE, .paths = 3, .threads = 1};
+    lq_stack_query query = {.mu = mu, .mu_count = COSINES, .paths = 3, .threads = 1};
     lq_stack_walked one[3 * COSINES], three[3 * COSINES];
     walk(SLAB, &query, 12345, one);
     query.threads = 3;
@@ -166,10 +165,10 @@ static void expect_lobe(const lq_stack_lobe *got, const lq_stack_lobe *noise, co
     assert_agrees(got->across, noise->across, rare / got->energy, want->across, estimate, "across", text, at);
 }
 
-static void expect_solved(const char *text, bool from_below, lq_scattering interfaces, size_t paths) {
+static void expect_solved(const char *text, bool from_below, bool single, size_t paths) {
     static const double cosines[] = {1.0, 0.45, 0.08};
     const lq_stack_query query = {
-        .mu = cosines, .mu_count = 3, .from_below = from_below, .interfaces = interfaces, .paths = paths};
+        .mu = cosines, .mu_count = 3, .from_below = from_below, .single = single, .paths = paths};
     lq_stack_light exact[3 * LQ_STACK_CHANNELS * LQ_STACK_WALK_PATHS];
     lq_stack_walked w[3 * LQ_STACK_CHANNELS * LQ_STACK_WALK_PATHS];
     lq_error error = {""};
@@ -190,18 +189,18 @@ static void expect_solved(const char *text, bool from_below, lq_scattering inter
 
 static void test_solver(void **state) {
     (void)state;
-    expect_solved(FROSTED, false, LQ_MULTIPLE, 3);
-    expect_solved(FROSTED, false, LQ_SINGLE, 0);
-    expect_solved(SLAB, true, LQ_MULTIPLE, 2);
-    expect_solved(SLAB, true, LQ_SINGLE, 0);
-    expect_solved(VARNISH, false, LQ_SINGLE, 0);
+    expect_solved(FROSTED, false, false, 3);
+    expect_solved(FROSTED, false, true, 0);
+    expect_solved(SLAB, true, false, 2);
+    expect_solved(SLAB, true, true, 0);
+    expect_solved(VARNISH, false, true, 0);
     expect_solved(
         "{\"layers\": [{\"dielectric\": {\"n\": [1.3, 1.5, 2], \"alpha\": 0.5}, \"medium\": {\"tau\": [0.8, "
         "0, 1]}}, {\"conductor\": {\"n\": 1.45, \"kappa\": 1, \"alpha\": [0.4, 0, 1]}}]}",
-        false, LQ_MULTIPLE, 0);
+        false, false, 0);
     expect_solved("{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.3, \"ndf\": \"beckmann\"}},"
                   "{\"dielectric\": {\"n\": 0.7, \"alpha\": 0}}]}",
-                  true, LQ_MULTIPLE, 0);
+                  true, false, 0);
 }
 
 /* ======================================================================================
@@ -224,7 +223,7 @@ static void expect_refused(const char *text, const lq_stack_query *query) {
 static void test_refusals(void **state) {
     (void)state;
     const double beyond = 1.5;
-    const lq_stack_query query = {.mu = mu, .mu_count = COSINES, .interfaces = LQ_MULTIPLE};
+    const lq_stack_query query = {.mu = mu, .mu_count = COSINES};
     expect_refused("{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": {\"min\": 0.1, \"max\": 0.6}}}]}",
                    &query);
     expect_refused("{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": {\"x\": 0.1, \"y\": 0.6}}}]}",
@@ -232,9 +231,7 @@ static void test_refusals(void **state) {
     expect_refused("{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": 0}, \"medium\": {\"sigma_s\": 1, "
                    "\"depth\": 1}}]}",
                    &query);
-    expect_refused(
-        FROSTED,
-        &(lq_stack_query){.mu = mu, .mu_count = COSINES, .from_below = true, .interfaces = LQ_MULTIPLE});
+    expect_refused(FROSTED, &(lq_stack_query){.mu = mu, .mu_count = COSINES, .from_below = true});
     expect_refused(FROSTED, &(lq_stack_query){.mu = &beyond, .mu_count = 1});
     lq_stack *stack = parse(FROSTED);
     lq_stack_walked w[COSINES];
@@ -257,7 +254,7 @@ static void test_hard_cases(void **state) {
         "{\"layers\": [{\"dielectric\": {\"n\": 4, \"alpha\": 0}}, {\"conductor\": {\"n\": 0, \"kappa\": 3, "
         "\"alpha\": 0.01}}]}"};
     static const double corners[COSINES] = {0.0, 1e-6, 1.0};
-    const lq_stack_query query = {.mu = corners, .mu_count = COSINES, .interfaces = LQ_MULTIPLE};
+    const lq_stack_query query = {.mu = corners, .mu_count = COSINES};
     lq_stack_walked w[COSINES];
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         walk(texts[i], &query, 500, w);

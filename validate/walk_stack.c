@@ -100,11 +100,11 @@ static lq_status make_rough(lq_walk_interface *f, const lq_layer *layer, double 
 }
 
 static lq_status make_interface(lq_walk_interface *f, const lq_layer *layer, int channel, double n_above,
-                                lq_scattering scattering, lq_error *error) {
+                                bool single, lq_error *error) {
     const double n = layer->n.value[channel], alpha = layer->alpha_x.value[channel];
     f->opaque = layer->type != LQ_LAYER_DIELECTRIC;
     f->diffuse = layer->type == LQ_LAYER_LAMBERTIAN;
-    f->once = scattering == LQ_SINGLE;
+    f->once = single;
     if (f->diffuse) {
         f->rho = layer->rho.value[channel];
         return LQ_OK;
@@ -137,7 +137,7 @@ static lq_status pile_make(pile *p, const lq_stack *stack, const lq_stack_query 
     double n_above = 1.0;
     for (size_t i = 0; i < count && status == LQ_OK; i++) {
         const lq_layer *layer = &stack->layers[i];
-        status = make_interface(&p->interface[i], layer, channel, n_above, query->interfaces, error);
+        status = make_interface(&p->interface[i], layer, channel, n_above, query->single, error);
         n_above = layer->n.value[channel];
         if (layer->type == LQ_LAYER_DIELECTRIC)
             p->log_tau[i + 1] = log(lq_medium_transmittance(&layer->medium, channel));

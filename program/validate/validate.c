@@ -47,13 +47,13 @@ static void print_notes(FILE *out) {
 
 /* Modes. */
 enum {
-    OWN = 1,         /* FILE of this program, against the solver */
-    WALKED = 2,      /* and against walks */
-    OTHERS = 4,      /* against another table */
-    PUBLISHED = 8,   /* a published FILE alone */
-    DESCRIBED = 16,  /* anybody's, --axes */
-    DIAGNOSED = 32,  /* --diagnose */
-    CERTIFIED = 64,  /* a certificate */
+    OWN = 1,          /* FILE of this program, against the solver */
+    WALKED = 2,       /* and against walks */
+    OTHERS = 4,       /* against another table */
+    PUBLISHED = 8,    /* a published FILE alone */
+    DESCRIBED = 16,   /* anybody's, --axes */
+    DIAGNOSED = 32,   /* --diagnose */
+    CERTIFIED = 64,   /* a certificate */
     HARD_CASES = 128, /* no file at all */
     STACKED = 256     /* a stack's description, against walks */
 };
@@ -138,7 +138,8 @@ static bool take_word(void *user, const char *word) {
     validate_request *request = user;
     const bool layers = request->file && is_stack(request);
     if (layers && !request->stack) request->stack = word;
-    else if (request->file) cli_message("one FILE at a time: '%s' after '%s'", word, layers ? request->stack : request->file);
+    else if (request->file)
+        cli_message("one FILE at a time: '%s' after '%s'", word, layers ? request->stack : request->file);
     else request->file = word;
     return request->file == word || request->stack == word;
 }

@@ -30,8 +30,8 @@ typedef struct validate_request {
     cli_given given; /* the options, as the command gave them */
     bool points_given;
     certify_request certify;
-    const char *axes; /* a JSON text that says what FILE, of anybody's, is */
-    bool diagnose;    /* FILE of this program, all of it, by the same report */
+    const char *axes;  /* a JSON text that says what FILE, of anybody's, is */
+    bool diagnose;     /* FILE of this program, all of it, by the same report */
     const char *stack; /* the description of one, against walks; `file` is the word "stack" */
     cli_light light;   /* what meets it */
 } validate_request;
