@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pca/blas.h"
+#include "system/blas.h"
 #include "system/status.h"
 
 enum {

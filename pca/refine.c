@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pca/blas.h"
+#include "system/blas.h"
 #include "pca/normal.h"
 #include "pca/refine_lines.h"
 #include "system/status.h"

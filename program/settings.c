@@ -8,8 +8,6 @@
 
 const char *const cli_scatterings[] = {[LQ_SINGLE] = "single", [LQ_MULTIPLE] = "multiple", NULL};
 const char *const cli_maskings[] = {[LQ_CORRELATED] = "correlated", [LQ_SEPARABLE] = "separable", NULL};
-const char *const cli_interfaces[] = {"all", "single", NULL};
-const char *const cli_sides[] = {"above", "below", NULL};
 
 cli_settings cli_settings_default(void) {
     return (cli_settings){.settings = lq_settings_default()};

@@ -60,8 +60,6 @@ typedef struct cli_settings {
 } cli_settings;
 
 extern const char *const cli_scatterings[], *const cli_maskings[];
-/* How a stack is lit: the choices of --interfaces and --from. */
-extern const char *const cli_interfaces[], *const cli_sides[];
 bool cli_read_ndf(void *settings, const char *value);
 /* --ndf as the name of what may be opened. */
 bool cli_read_trust(void *trust, const char *value);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pca/blas.h"
 #include "stack/pile.h"
+#include "system/blas.h"
 #include "system/parallel.h"
 #include "system/status.h"
 

@@ -199,7 +199,7 @@ static void test_solver(void **state) {
         "0, 1]}}, {\"conductor\": {\"n\": 1.45, \"kappa\": 1, \"alpha\": [0.4, 0, 1]}}]}",
         false, false, 0);
     expect_solved("{\"layers\": [{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.3, \"ndf\": \"beckmann\"}},"
-                  "{\"dielectric\": {\"n\": 0.7, \"alpha\": 0}}]}",
+                  "{\"dielectric\": {\"n\": 0.7, \"alpha\": 0}, \"medium\": {\"tau\": 0.9}}]}",
                   true, false, 0);
 }
 

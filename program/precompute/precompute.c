@@ -2,6 +2,7 @@
 #include "program/precompute/precompute.h"
 
 #include "program/catalogue.h"
+#include "program/light.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/output.h"

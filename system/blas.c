@@ -1,5 +1,5 @@
 /* blas.c - BLAS on the calling thread only, and the process as it was afterwards. */
-#include "pca/blas.h"
+#include "system/blas.h"
 
 #include <cblas.h>
 

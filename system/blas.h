@@ -1,6 +1,6 @@
 /* blas.h - BLAS on the calling thread only, and the process as it was afterwards. */
-#ifndef LACQUER_PCA_BLAS_H
-#define LACQUER_PCA_BLAS_H
+#ifndef LACQUER_SYSTEM_BLAS_H
+#define LACQUER_SYSTEM_BLAS_H
 
 #include <stdbool.h>
 
