@@ -18,7 +18,8 @@ typedef double lq_v8 __attribute__((vector_size(64)));
 /* Where a cosine lies on the axis of the interpolation nodes:
  *     x = scale asinh(t / alpha) + shift,
  * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. Where `root` is set, it is
- *     x = scale sqrt(cosine - from) + shift. */
+ *     x = scale sqrt(root (cosine - from)) + shift,
+ * root being 1 or -1. */
 typedef struct lq_cosine_map {
     double inverse_alpha, scale, shift;
     int half_angle;

@@ -28,11 +28,11 @@ static inline double log_positive(double x) {
 static void map_cosines(const lq_cosine_map *map, size_t count, const double *restrict cosine,
                         double *restrict x) {
     const double inverse = map->inverse_alpha, scale = map->scale, shift = map->shift;
-    const double half = map->half_angle ? 1.0 : 0.0, from = map->from;
+    const double half = map->half_angle ? 1.0 : 0.0, from = map->from, sign = map->root;
     if (map->root) {
         for (size_t i = 0; i < count; i++) {
-            const double above = cosine[i] - from;
-            x[i] = scale * sqrt(above > 0.0 ? above : 0.0) + shift;
+            const double apart = sign * (cosine[i] - from);
+            x[i] = scale * sqrt(apart > 0.0 ? apart : 0.0) + shift;
         }
         return;
     }

@@ -23,14 +23,14 @@ double lq_inverse_area(double area) {
 }
 
 static double map_forward(const lq_cosine_map *map, double mu) {
-    if (map->root) return map->scale * sqrt(fmax(mu - map->from, 0.0)) + map->shift;
+    if (map->root) return map->scale * sqrt(fmax(map->root * (mu - map->from), 0.0)) + map->shift;
     const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
     return map->scale * asinh(t * map->inverse_alpha) + map->shift;
 }
 
 static double map_inverse(const lq_cosine_map *map, double x) {
     const double root = (x - map->shift) / map->scale;
-    if (map->root) return fmin(map->from + root * root, 1.0);
+    if (map->root) return fmin(map->from + map->root * root * root, 1.0);
     const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
     return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
 }
@@ -81,11 +81,15 @@ bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense,
     return place_nodes(axis);
 }
 
-bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes) {
-    start_axis(axis, cuts, cut_count, nodes);
-    for (int e = 0; e <= cut_count; e++) {
-        const double from = axis->bound[e], width = axis->bound[e + 1] - from;
-        axis->map[e] = (lq_cosine_map){.root = 1, .from = from, .scale = 2.0 / sqrt(width), .shift = -1.0};
+bool lq_node_axis_make_roots(lq_node_axis *axis, const lq_root_element *elements, int count, int nodes) {
+    double bounds[LQ_ELEMENTS_MAX];
+    for (int e = 0; e < count; e++) bounds[e] = elements[e].to;
+    start_axis(axis, bounds, count - 1, nodes);
+    for (int e = 0; e < count; e++) {
+        const double from = axis->bound[e], to = axis->bound[e + 1], scale = 2.0 / sqrt(to - from);
+        axis->map[e] = elements[e].from_above
+                           ? (lq_cosine_map){.root = -1, .from = to, .scale = -scale, .shift = 1.0}
+                           : (lq_cosine_map){.root = 1, .from = from, .scale = scale, .shift = -1.0};
     }
     return place_nodes(axis);
 }
@@ -162,8 +166,8 @@ void lq_node_axis_cosine_mean(const lq_node_axis *axis, double *weights) {
         const double from = axis->bound[e], width = axis->bound[e + 1] - from;
         double mu[LQ_GAUSS_MAX], weight[LQ_GAUSS_MAX];
         for (int i = 0; i < rule.count; i++) {
-            const double x = rule.node[i]; /* mu = from + width x^2 */
-            mu[i] = from + width * x * x;
+            const double x = rule.node[i]; /* the root of the distance to its dense end */
+            mu[i] = axis->map[e].root > 0 ? from + width * x * x : from + width - width * x * x;
             weight[i] = 4.0 * mu[i] * width * x * rule.weight[i];
         }
         total += lq_node_axis_moments(axis, lq_solver_kernels_get(), (size_t)rule.count, mu, weight, moments);

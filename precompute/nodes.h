@@ -37,9 +37,16 @@ bool lq_node_axis_make(lq_node_axis *axis, double alpha, lq_sense sense, int cou
 bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense, const double *splits,
                                int split_count, int nodes);
 
-/* An axis in roots, divided at `cut_count` cosines (ascending, in (0,1), fewer than LQ_ELEMENTS_MAX), `nodes`
- * an element, LQ_NODES_MAX in all. False without memory; free it in either case. */
-bool lq_node_axis_make_cut(lq_node_axis *axis, const double *cuts, int cut_count, int nodes);
+/* An element of an axis in roots: from where the one below ends up to `to`, in the root of the distance to
+ * its lower end, or to its upper one. */
+typedef struct lq_root_element {
+    double to;
+    bool from_above;
+} lq_root_element;
+
+/* An axis in roots of at most LQ_ELEMENTS_MAX elements, the last one up to 1, and at most LQ_NODES_MAX nodes
+ * in all, `nodes` an element. False without memory; free it in either case. */
+bool lq_node_axis_make_roots(lq_node_axis *axis, const lq_root_element *elements, int count, int nodes);
 
 void lq_node_axis_free(lq_node_axis *axis);
 

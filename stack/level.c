@@ -11,7 +11,7 @@
 #include "system/status.h"
 
 /* Nodes of each element of a medium's axis. */
-static const int axis_nodes[LQ_SURFACE_LEVELS] = {16, 16, 20, 28, 36, 48};
+static const int axis_nodes[LQ_SURFACE_LEVELS] = {12, 16, 20, 24, 32, 42, 56};
 
 typedef struct solving {
     const lq_plan *plan;
@@ -249,6 +249,19 @@ static lq_status solve_channel(const solving *s, int channel, lq_error *error) {
  *                                        Level
  * ====================================================================================== */
 
+/* From cut to cut; what lies below a step is halved, so that nodes are dense on both sides of the step. */
+static int elements_of(const lq_plan_axis *a, lq_root_element *elements) {
+    int count = 0;
+    for (int c = 0; c < a->cut_count; c++) {
+        const double from = c > 0 ? a->cut[c - 1] : 0.0;
+        const bool halved = a->stepped[c] && count + 2 + a->cut_count - c <= LQ_ELEMENTS_MAX;
+        if (halved) elements[count++] = (lq_root_element){0.5 * (from + a->cut[c]), false};
+        elements[count++] = (lq_root_element){a->cut[c], halved};
+    }
+    elements[count++] = (lq_root_element){1.0, false};
+    return count;
+}
+
 static lq_status begin(solving *s, lq_error *error) {
     const size_t surfaces = s->plan->surface_count, axes = s->plan->axis_count;
     s->axis = calloc(axes, sizeof *s->axis);
@@ -259,8 +272,10 @@ static lq_status begin(solving *s, lq_error *error) {
     bool ok = s->axis && s->work && s->entry && s->block && s->first;
     for (size_t i = 0; i < axes && ok; i++) {
         const lq_plan_axis *a = &s->plan->axis[i];
-        const int most = LQ_NODES_MAX / (a->cut_count + 1), wanted = axis_nodes[s->level];
-        ok = lq_node_axis_make_cut(&s->axis[i], a->cut, a->cut_count, wanted < most ? wanted : most);
+        lq_root_element elements[LQ_ELEMENTS_MAX];
+        const int count = elements_of(a, elements);
+        const int most = LQ_NODES_MAX / count, wanted = axis_nodes[s->level];
+        ok = lq_node_axis_make_roots(&s->axis[i], elements, count, wanted < most ? wanted : most);
     }
     return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu surfaces", surfaces);
 }

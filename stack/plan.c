@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "microfacet/fresnel.h"
+#include "precompute/first_bounce.h"
 #include "stack/description.h"
 #include "system/status.h"
 
@@ -185,16 +186,21 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
 /* Steps that an interface of more than this roughness makes are as wide as lobes are: nodes resolve them. */
 static const double SHARP_ALPHA = 0.25;
 
+/* Of less than this, nodes resolve the step from below only if they are dense there. */
+static const double STEP_ALPHA = 0.15;
+
 static bool is_at(const lq_plan *plan, const lq_plan_surface *s, double index) {
     for (int m = 0; s->spec.opaque && m < s->spec.materials; m++)
         if (fabs(s->spec.n[m] * plan->axis[s->axis[0]].n - index) <= 1e-12 * index) return true;
     return !s->spec.opaque && (plan->axis[s->axis[0]].n == index || plan->axis[s->axis[1]].n == index);
 }
 
-static bool makes_steps(const lq_plan *plan, double rarer) {
+/* Does an interface with a roughness in (from, to) turn reflective towards that index? */
+static bool turns(const lq_plan *plan, double rarer, double from, double to) {
     for (size_t i = 0; i < plan->surface_count; i++) {
         const lq_plan_surface *s = &plan->surface[i];
-        if (!s->spec.diffuse && s->spec.alpha < SHARP_ALPHA && is_at(plan, s, rarer)) return true;
+        if (!s->spec.diffuse && s->spec.alpha > from && s->spec.alpha < to && is_at(plan, s, rarer))
+            return true;
     }
     return false;
 }
@@ -202,8 +208,11 @@ static bool makes_steps(const lq_plan *plan, double rarer) {
 static void find_sharp(lq_plan *plan) {
     for (size_t i = 0; i < plan->axis_count; i++) {
         lq_plan_axis *a = &plan->axis[i];
-        for (int c = 0; c < a->cut_count && a->sharp.count < LQ_FACET_CUTS_MAX; c++)
-            if (makes_steps(plan, a->rarer[c])) a->sharp.cosine[a->sharp.count++] = a->cut[c];
+        for (int c = 0; c < a->cut_count; c++) {
+            a->stepped[c] = turns(plan, a->rarer[c], LQ_SMOOTH_ALPHA, STEP_ALPHA);
+            if (turns(plan, a->rarer[c], -1.0, SHARP_ALPHA) && a->sharp.count < LQ_FACET_CUTS_MAX)
+                a->sharp.cosine[a->sharp.count++] = a->cut[c];
+        }
     }
 }
 

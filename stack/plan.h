@@ -16,6 +16,7 @@ typedef struct lq_plan_axis {
     int cut_count;
     double cut[LQ_ELEMENTS_MAX];
     double rarer[LQ_ELEMENTS_MAX]; /* index of the medium that light is totally reflected towards */
+    bool stepped[LQ_ELEMENTS_MAX]; /* a nearly smooth interface makes that cut, as a step of some width */
     lq_facet_cuts sharp;           /* the cuts that smooth or nearly smooth interfaces make */
 } lq_plan_axis;
 

@@ -101,11 +101,10 @@ static void make_kinks(lq_surface_work *w) {
     }
 }
 
-/* Nodes and their quadrature are what limits the accuracy, depths are not (measured on the stacks of the
- * tests). */
-static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {{16, 12, 10, 16}, {24, 12, 16, 20},
-                                                             {32, 16, 20, 28}, {48, 20, 32, 40},
-                                                             {64, 24, 40, 48}, {96, 32, 56, 64}};
+/* No two levels share a resolution that could be what limits both. */
+static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
+    {12, 12, 8, 12},  {16, 16, 10, 16}, {20, 20, 14, 20}, {28, 24, 18, 26},
+    {40, 28, 26, 34}, {56, 36, 36, 46}, {84, 40, 52, 60}};
 
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
