@@ -138,7 +138,9 @@ static lq_level_splits splits_of(const lq_surface *s) {
 static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
     lq_resolution r = resolutions[level];
-    const int each = (r.nodes / (splits.count + 1) + 3) / 4 * 4;
+    /* The axis is logarithmic down to alpha: the smoother, the longer. */
+    const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
+    const int each = ((int)(r.nodes * length) / (splits.count + 1) + 3) / 4 * 4;
     r.nodes = each > FEWEST_NODES ? each : FEWEST_NODES;
     /* A conductor is like media that differ: no facet lets light go on almost undeviated. */
     return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 2.0 : s->eta, &r, &splits);
