@@ -6,7 +6,7 @@
 
 enum {
     LQ_LANES = 8,        /* materials that are solved together */
-    LQ_NODES_MAX = 192,  /* cosines of the finest level */
+    LQ_NODES_MAX = 384,  /* cosines of the finest level */
     LQ_FACETS_MAX = 256, /* facets handed over at once */
     LQ_DEPTHS_LIMIT = 44 /* collocation depths of the finest level */
 };

@@ -33,7 +33,8 @@ struct lq_rough_level {
 /* lq_refracted_hits of light that arrives with `lambda` at all rising nodes: hits[at * nodes + j]. */
 void lq_rough_level_refracted(const lq_rough_level *level, double lambda, double *hits);
 
-/* Node cosines (a multiple of 4), depths (too), quadrature nodes per panel of d and per piece of azimuth. */
+/* Node cosines (all elements together a multiple of 4), depths (too), quadrature nodes per panel of d and per
+ * piece of azimuth. */
 typedef struct lq_resolution {
     int nodes, depths, outer, inner;
 } lq_resolution;

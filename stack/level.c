@@ -274,8 +274,10 @@ static lq_status begin(solving *s, lq_error *error) {
         const lq_plan_axis *a = &s->plan->axis[i];
         lq_root_element elements[LQ_ELEMENTS_MAX];
         const int count = elements_of(a, elements);
-        const int most = LQ_NODES_MAX / count, wanted = axis_nodes[s->level];
-        ok = lq_node_axis_make_roots(&s->axis[i], elements, count, wanted < most ? wanted : most);
+        if (axis_nodes[s->level] * count > LQ_NODES_MAX)
+            return lq_fail(error, LQ_NOT_CONVERGED, "%d elements of a cosine axis are too many for level %d",
+                           count, s->level);
+        ok = lq_node_axis_make_roots(&s->axis[i], elements, count, axis_nodes[s->level]);
     }
     return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu surfaces", surfaces);
 }

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "microfacet/fresnel.h"
-#include "precompute/first_bounce.h"
 #include "stack/description.h"
 #include "system/status.h"
 
@@ -73,55 +71,33 @@ static lq_plan_step find_surface(lq_plan *plan, const lq_plan_surface *surface) 
  *                                        Media
  * ====================================================================================== */
 
-/* Cuts closer than this to each other or to an end of the axis are one. */
-static const double CUTS_APART = 1e-6;
-
-/* Put a cut in its place. `rarer`: the index that light is totally reflected towards. */
-static void add_cut(lq_plan_axis *axis, double cosine, double rarer) {
-    int i = 0;
-    if (!(cosine > CUTS_APART && cosine < 1.0 - CUTS_APART) || axis->cut_count + 1 == LQ_ELEMENTS_MAX) return;
-    while (i < axis->cut_count && axis->cut[i] < cosine) i++;
-    if (i < axis->cut_count && axis->cut[i] - cosine < CUTS_APART) return;
-    if (i > 0 && cosine - axis->cut[i - 1] < CUTS_APART) return;
-    for (int k = axis->cut_count++; k > i; k--) {
-        axis->cut[k] = axis->cut[k - 1];
-        axis->rarer[k] = axis->rarer[k - 1];
-    }
-    axis->cut[i] = cosine;
-    axis->rarer[i] = rarer;
-}
-
-/* The axis of a medium of index n among those of indices `all`: cut where light is totally reflected towards
- * each rarer one. */
-static lq_plan_axis axis_of(double n, const double *all, size_t count) {
-    lq_plan_axis axis;
-    memset(&axis, 0, sizeof axis); /* compared as bytes */
-    axis.n = n;
-    for (size_t i = 0; i < count; i++)
-        if (all[i] < n) add_cut(&axis, sqrt((1.0 - all[i] / n) * (1.0 + all[i] / n)), all[i]);
-    return axis;
-}
-
-/* A conductor whose index is below that of the medium turns reflective at an angle too, the more sharply the
- * less it absorbs. */
-static void add_conductor_cut(lq_plan_axis *axis, double n, double kappa) {
-    lq_fresnel_singularity found[2];
-    if (n >= axis->n) return;
-    lq_fresnel_singularities(n / axis->n, kappa / axis->n, found);
-    if (found[0].distance < 0.15) add_cut(axis, cos(found[0].angle), n);
-}
-
 static double value_of(const lq_quantity *q, int channel) {
     return q->value[channel];
 }
 
-/* Indices of the media from the top, [interfaces + 1]. */
-static size_t media_of(const lq_stack *stack, int channel, double *n) {
-    size_t count = 1;
-    n[0] = 1.0;
-    for (size_t i = 0; i < stack->layer_count; i++)
-        if (stack->layers[i].type == LQ_LAYER_DIELECTRIC) n[count++] = value_of(&stack->layers[i].n, channel);
-    return count;
+static void media_free(lq_media *media) {
+    free(media->n);
+    free(media->alpha);
+}
+
+/* False without memory; free it in either case. */
+static bool media_make(lq_media *media, const lq_stack *stack, int channel) {
+    const size_t layers = stack->layer_count;
+    *media = (lq_media){.count = 1, .base_n = -1.0};
+    media->n = malloc((layers + 1) * sizeof *media->n);
+    media->alpha = malloc((layers + 1) * sizeof *media->alpha);
+    if (!media->n || !media->alpha) return false;
+    media->n[0] = 1.0;
+    for (size_t i = 0; i < layers; i++) {
+        const lq_layer *layer = &stack->layers[i];
+        media->alpha[i] = layer->type == LQ_LAYER_LAMBERTIAN ? INFINITY : value_of(&layer->alpha_x, channel);
+        media->alpha[i + 1] = INFINITY;
+        if (layer->type == LQ_LAYER_DIELECTRIC) media->n[media->count++] = value_of(&layer->n, channel);
+        if (layer->type != LQ_LAYER_CONDUCTOR) continue;
+        media->base_n = value_of(&layer->n, channel) / media->n[media->count - 1];
+        media->base_kappa = value_of(&layer->kappa, channel) / media->n[media->count - 1];
+    }
+    return true;
 }
 
 /* ======================================================================================
@@ -183,64 +159,28 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
     }
 }
 
-/* Steps that an interface of more than this roughness makes are as wide as lobes are: nodes resolve them. */
-static const double SHARP_ALPHA = 0.25;
-
-/* Of less than this, nodes resolve the step from below only if they are dense there. */
-static const double STEP_ALPHA = 0.15;
-
-static bool is_at(const lq_plan *plan, const lq_plan_surface *s, double index) {
-    for (int m = 0; s->spec.opaque && m < s->spec.materials; m++)
-        if (fabs(s->spec.n[m] * plan->axis[s->axis[0]].n - index) <= 1e-12 * index) return true;
-    return !s->spec.opaque && (plan->axis[s->axis[0]].n == index || plan->axis[s->axis[1]].n == index);
-}
-
-/* Does an interface with a roughness in (from, to) turn reflective towards that index? */
-static bool turns(const lq_plan *plan, double rarer, double from, double to) {
-    for (size_t i = 0; i < plan->surface_count; i++) {
-        const lq_plan_surface *s = &plan->surface[i];
-        if (!s->spec.diffuse && s->spec.alpha > from && s->spec.alpha < to && is_at(plan, s, rarer))
-            return true;
-    }
-    return false;
-}
-
-static void find_sharp(lq_plan *plan) {
-    for (size_t i = 0; i < plan->axis_count; i++) {
-        lq_plan_axis *a = &plan->axis[i];
-        for (int c = 0; c < a->cut_count; c++) {
-            a->stepped[c] = turns(plan, a->rarer[c], LQ_SMOOTH_ALPHA, STEP_ALPHA);
-            if (turns(plan, a->rarer[c], -1.0, SHARP_ALPHA) && a->sharp.count < LQ_FACET_CUTS_MAX)
-                a->sharp.cosine[a->sharp.count++] = a->cut[c];
-        }
-    }
-}
-
 static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, bool from_below,
                             lq_scattering scattering, lq_error *error) {
     lq_plan_chain *chain = &plan->chain[channel];
     const size_t layers = stack->layer_count;
-    double *n = malloc((layers + 1) * sizeof *n);
+    lq_media media;
+    const bool known = media_make(&media, stack, channel);
     chain->step = calloc(layers, sizeof *chain->step);
     chain->medium = calloc(layers + 1, sizeof *chain->medium);
     lq_status status = LQ_OK;
-    if (!n || !chain->step || !chain->medium) {
-        free(n);
+    if (!known || !chain->step || !chain->medium) {
+        media_free(&media);
         return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", layers);
     }
-    const size_t media = media_of(stack, channel, n);
-    const lq_layer *base = &stack->layers[layers - 1];
-    for (size_t i = 0; i < media; i++) {
-        lq_plan_axis axis = axis_of(n[i], n, media);
-        if (i + 1 == media && base->type == LQ_LAYER_CONDUCTOR)
-            add_conductor_cut(&axis, value_of(&base->n, channel), value_of(&base->kappa, channel));
+    for (size_t i = 0; i < media.count; i++) {
+        const lq_plan_axis axis = lq_media_axis(&media, media.n[i]);
         chain->medium[i].axis = find_axis(plan, &axis);
         chain->medium[i].tau = i == 0 ? 1.0 : lq_medium_transmittance(&stack->layers[i - 1].medium, channel);
     }
+    media_free(&media);
     for (size_t i = 0; i < layers && status == LQ_OK; i++)
         status = add_step(plan, chain, &stack->layers[i], channel, scattering, error);
     chain->opaque = stack->layers[layers - 1].type != LQ_LAYER_DIELECTRIC;
-    free(n);
     if (status != LQ_OK) return status;
     if (from_below) reverse(chain);
     mark_sides(plan, chain);
@@ -260,7 +200,6 @@ lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq
         status = lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", stack->layer_count);
     for (int c = 0; c < plan->channels && status == LQ_OK; c++)
         status = make_chain(plan, stack, c, from_below, scattering, error);
-    if (status == LQ_OK) find_sharp(plan);
     if (status != LQ_OK) lq_plan_free(plan);
     return status;
 }

@@ -7,18 +7,8 @@
 #ifndef LACQUER_STACK_PLAN_H
 #define LACQUER_STACK_PLAN_H
 
-#include "precompute/nodes.h"
+#include "stack/media.h"
 #include "stack/surface.h"
-
-/* A medium's index, and where energies in it step. */
-typedef struct lq_plan_axis {
-    double n;
-    int cut_count;
-    double cut[LQ_ELEMENTS_MAX];
-    double rarer[LQ_ELEMENTS_MAX]; /* index of the medium that light is totally reflected towards */
-    bool stepped[LQ_ELEMENTS_MAX]; /* a nearly smooth interface makes that cut, as a step of some width */
-    lq_facet_cuts sharp;           /* the cuts that smooth or nearly smooth interfaces make */
-} lq_plan_axis;
 
 typedef struct lq_plan_surface {
     lq_surface spec; /* without axes and entries */

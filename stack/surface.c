@@ -135,13 +135,21 @@ static lq_level_splits splits_of(const lq_surface *s) {
     return splits;
 }
 
+/* Nodes of one element: of the length of the axis, which is logarithmic down to alpha, and more at every
+ * level even where many elements share few; all nodes together are a multiple of four. */
+static int nodes_each(const lq_surface *s, int level, int elements) {
+    static const int step[4] = {1, 4, 2, 4};
+    const int unit = step[elements % 4], grows = unit > 2 ? unit : 2;
+    const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
+    const int share = (int)(resolutions[level].nodes * length) / elements,
+              fewest = FEWEST_NODES + grows * level;
+    return ((share > fewest ? share : fewest) + unit - 1) / unit * unit;
+}
+
 static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
     lq_resolution r = resolutions[level];
-    /* The axis is logarithmic down to alpha: the smoother, the longer. */
-    const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
-    const int each = ((int)(r.nodes * length) / (splits.count + 1) + 3) / 4 * 4;
-    r.nodes = each > FEWEST_NODES ? each : FEWEST_NODES;
+    r.nodes = nodes_each(s, level, splits.count + 1);
     /* A conductor is like media that differ: no facet lets light go on almost undeviated. */
     return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 2.0 : s->eta, &r, &splits);
 }
