@@ -11,7 +11,7 @@
 #include "system/status.h"
 
 /* Nodes of each element of a medium's axis. */
-static const int axis_nodes[LQ_SURFACE_LEVELS] = {12, 16, 20, 24, 32, 42, 56};
+static const int axis_nodes[LQ_SURFACE_LEVELS] = {14, 18, 22, 28, 36, 46, 60};
 
 typedef struct solving {
     const lq_plan *plan;
