@@ -20,9 +20,11 @@ static double difference(const lq_stack_lobe *a, const lq_stack_lobe *b) {
     return fmax(fmax(energy, sin2), fmax(fabs(a->mean - b->mean), fabs(a->across - b->across)));
 }
 
-/* Every level is at least 2.5 times as good as the one before, so that twice of what has changed covers what
- * is left. An estimate is never below a tenth of the tolerance: two levels can agree by accident. */
-static const double CAUTION = 2.0, LEAST = 0.1;
+/* The level that is kept is five and more times as good as the one before, as a rule; where light meets many
+ * facets between nearly equal indices it can be no better than two thirds, and three times of what has
+ * changed covers that. An estimate is never below a tenth of the tolerance: two levels can agree by accident.
+ */
+static const double CAUTION = 3.0, LEAST = 0.1;
 
 static double estimate_of(const lq_stack_light *now, const lq_stack_light *before, double tolerance) {
     const double change = fmax(difference(&now->reflected, &before->reflected),

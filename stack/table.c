@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stack/along.h"
 #include "stack/description.h"
 #include "system/parallel.h"
 #include "system/status.h"
@@ -14,12 +15,19 @@ static const char *const moments[] = {
 static const char *const energies[] = {"reflected.r",   "reflected.g",   "reflected.b",
                                        "transmitted.r", "transmitted.g", "transmitted.b"};
 
+/* A table is solved by turns, one a set of the parameters; along one axis of them, at values of lq_along. */
 typedef struct filling {
     const lq_stack *stack;
     const lq_stack_query *query;
     lq_table *table;
     int mu_axis, channels;
-    double *errors; /* of each turn */
+    int along_axis; /* -1: there are no parameters */
+    bool interpolates;
+    lq_along along;
+    size_t others;      /* sets of the other parameters */
+    size_t first, done; /* values of `along` that a loop is at, and that are solved */
+    double *solved;     /* [((value * others) + other) * numbers_of + channel * cosines + m] */
+    double *errors;     /* likewise, of each turn */
 } filling;
 
 static bool is_opaque(const lq_stack *stack) {
@@ -30,40 +38,51 @@ static bool is_opaque(const lq_stack *stack) {
  *                                         Turns
  * ====================================================================================== */
 
-/* A turn is one set of the parameters: all axes but mu, the first of them fastest. The offset of its first
- * entry, with the parameters set. */
-static lq_status set_parameters(const filling *f, size_t turn, lq_stack *stack, size_t *offset,
+/* The share of the tolerance that interpolation may take. */
+static const double INTERPOLATION = 0.4;
+
+static double tolerance_of(const filling *f) {
+    return f->query->tolerance > 0.0 ? f->query->tolerance : 1e-4;
+}
+
+static size_t cosines_of(const filling *f) {
+    return f->table->axes[f->mu_axis].size;
+}
+
+static size_t numbers_of(const filling *f) {
+    return (size_t)f->table->channel_count * cosines_of(f);
+}
+
+/* The parameters of one turn; `other` counts those that are not interpolated, the first axis fastest. */
+static lq_status set_parameters(const filling *f, size_t value, size_t other, lq_stack *stack,
                                 lq_error *error) {
-    size_t stride = 1;
     lq_status status = LQ_OK;
-    *offset = 0;
     for (int a = 0; a < f->table->axis_count && status == LQ_OK; a++) {
         const lq_axis *axis = &f->table->axes[a];
-        if (a != f->mu_axis) {
-            const size_t node = turn % axis->size;
-            turn /= axis->size;
-            *offset += node * stride;
-            status = lq_stack_set(stack, axis->name, axis->nodes[node], error);
+        if (a == f->mu_axis) continue;
+        if (a == f->along_axis) {
+            status = lq_stack_set(stack, axis->name, f->along.value[value], error);
+            continue;
         }
-        stride *= axis->size;
+        status = lq_stack_set(stack, axis->name, axis->nodes[other % axis->size], error);
+        other /= axis->size;
     }
     return status;
 }
 
-static void store(const filling *f, const lq_stack_light *light, size_t offset) {
-    const size_t count = f->table->axes[f->mu_axis].size;
-    size_t stride = 1;
-    for (int a = 0; a < f->mu_axis; a++) stride *= f->table->axes[a].size;
+static void keep(const filling *f, const lq_stack_light *light, double *numbers) {
+    const size_t count = cosines_of(f);
+    const bool rgb = f->channels > 1;
     for (size_t m = 0; m < count; m++)
         for (int k = 0; k < f->table->channel_count; k++) {
-            const lq_stack_light *l = &light[m * (size_t)f->channels + (f->channels > 1 ? (size_t)k % 3 : 0)];
-            const lq_stack_lobe *lobe = k < (f->channels > 1 ? 3 : 4) ? &l->reflected : &l->transmitted;
+            const lq_stack_light *l = &light[m * (size_t)f->channels + (rgb ? (size_t)k % 3 : 0)];
+            const lq_stack_lobe *lobe = k < (rgb ? 3 : 4) ? &l->reflected : &l->transmitted;
             const double of_lobe[4] = {lobe->energy, lobe->sin2, lobe->mean, lobe->across};
-            f->table->channels[k][offset + m * stride] = (float)of_lobe[f->channels > 1 ? 0 : k % 4];
+            numbers[(size_t)k * count + m] = of_lobe[rgb ? 0 : k % 4];
         }
 }
 
-static lq_status fill_turn(void *user, size_t turn, int thread, lq_error *error) {
+static lq_status solve_turn(void *user, size_t turn, int thread, lq_error *error) {
     (void)thread;
     const filling *f = user;
     const lq_axis *mu = &f->table->axes[f->mu_axis];
@@ -71,21 +90,98 @@ static lq_status fill_turn(void *user, size_t turn, int thread, lq_error *error)
     query.mu = mu->nodes;
     query.mu_count = mu->size;
     query.paths = 0;
+    query.tolerance = (f->interpolates ? 1.0 - INTERPOLATION : 1.0) * tolerance_of(f);
     lq_stack *stack = NULL;
-    size_t offset = 0;
+    const size_t place = f->first * f->others + turn;
     lq_stack_light *light = malloc((mu->size * (size_t)f->channels + 1) * sizeof *light);
     lq_status status = light ? lq_stack_copy(&stack, f->stack, error)
                              : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", mu->size);
-    if (status == LQ_OK) status = set_parameters(f, turn, stack, &offset, error);
+    if (status == LQ_OK) status = set_parameters(f, place / f->others, place % f->others, stack, error);
     if (status == LQ_OK) status = lq_stack_solve(stack, &query, light, NULL, error);
     if (status == LQ_OK || status == LQ_NOT_CONVERGED) {
-        store(f, light, offset);
+        keep(f, light, f->solved + place * numbers_of(f));
         for (size_t i = 0; i < mu->size * (size_t)f->channels; i++)
-            f->errors[turn] = fmax(f->errors[turn], light[i].error);
+            f->errors[place] = fmax(f->errors[place], light[i].error);
     }
     lq_stack_free(stack);
     free(light);
     return status;
+}
+
+/* Solve what `along` has and is not solved yet. */
+static lq_status solve_turns(filling *f, const lq_progress *progress, lq_error *error) {
+    f->first = f->done;
+    const size_t turns = (f->along.count - f->first) * f->others;
+    f->done = f->along.count;
+    return turns ? lq_parallel(turns, f->query->threads, solve_turn, f, progress, error) : LQ_OK;
+}
+
+/* ======================================================================================
+ *                                     Interpolation
+ * ====================================================================================== */
+
+/* What the series of a panel leaves out. */
+static double missing(const filling *f, int panel) {
+    const size_t size = numbers_of(f);
+    double most = 0.0;
+    for (size_t other = 0; other < f->others; other++)
+        most = fmax(most, lq_series_truncation(&f->along.panel[panel],
+                                               f->solved + (f->along.first[panel] * f->others + other) * size,
+                                               f->others * size, 1, size));
+    return most;
+}
+
+/* Where the share of interpolation does not do, nodes are solved one by one. The most that is left out. */
+static double settle_panels(filling *f) {
+    double most = 0.0;
+    for (int p = 0; p < LQ_ALONG_PANELS; p++) {
+        if (!f->along.panel_used[p]) continue;
+        const double left = missing(f, p);
+        if (left > INTERPOLATION * tolerance_of(f)) lq_along_drop(&f->along, p);
+        else most = fmax(most, left);
+    }
+    return most;
+}
+
+/* The error of what a node is made of, and its numbers into the table. */
+static double store_node(const filling *f, size_t node, size_t other, size_t offset, size_t stride) {
+    double weight[LQ_ALONG_POINTS], error = 0.0;
+    size_t first;
+    const size_t points = lq_along_weights(&f->along, node, &first, weight), count = cosines_of(f);
+    for (size_t k = 0; k < points; k++) error = fmax(error, f->errors[(first + k) * f->others + other]);
+    for (size_t i = 0; i < numbers_of(f); i++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < points; k++)
+            sum += weight[k] * f->solved[((first + k) * f->others + other) * numbers_of(f) + i];
+        f->table->channels[i / count][offset + i % count * stride] = (float)sum;
+    }
+    return error;
+}
+
+/* Every node of the table; the largest error of a solve. */
+static double store_all(const filling *f) {
+    const size_t sets = lq_table_entries(f->table) / cosines_of(f);
+    double most = 0.0;
+    for (size_t set = 0; set < sets; set++) {
+        size_t left = set, stride = 1, offset = 0, mu_stride = 1, node = 0, other = 0, others = 1;
+        for (int a = 0; a < f->table->axis_count; a++) {
+            const size_t size = f->table->axes[a].size;
+            if (a == f->mu_axis) mu_stride = stride;
+            else {
+                const size_t at = left % size;
+                left /= size;
+                offset += at * stride;
+                if (a == f->along_axis) node = at;
+                else {
+                    other += at * others;
+                    others *= size;
+                }
+            }
+            stride *= size;
+        }
+        most = fmax(most, store_node(f, node, other, offset, mu_stride));
+    }
+    return most;
 }
 
 /* ======================================================================================
@@ -122,7 +218,7 @@ static lq_status set_error(lq_table *table, double value, lq_error *error) {
 
 static lq_status set_facts(const filling *f, lq_error *error) {
     char tolerance[32], *description = NULL;
-    snprintf(tolerance, sizeof tolerance, "%.3g", f->query->tolerance > 0.0 ? f->query->tolerance : 1e-4);
+    snprintf(tolerance, sizeof tolerance, "%.3g", tolerance_of(f));
     lq_status status = lq_stack_text(f->stack, &description, error);
     const char *const facts[][2] = {
         {"table", "stack"},
@@ -141,21 +237,43 @@ static lq_status set_facts(const filling *f, lq_error *error) {
     return status;
 }
 
+/* The parameter that turns go along: the first roughness, otherwise any. */
+static void choose_along(filling *f) {
+    f->along_axis = -1;
+    for (int a = f->table->axis_count; a-- > 0;)
+        if (a != f->mu_axis) f->along_axis = a;
+    for (int a = f->table->axis_count; a-- > 0;)
+        if (strstr(f->table->axes[a].name, ".alpha") && !strstr(f->table->axes[a].name, ".rotate"))
+            f->along_axis = a;
+}
+
+static lq_status allocate(filling *f, lq_error *error) {
+    static const double none = 0.0;
+    choose_along(f);
+    const lq_axis *axis = f->along_axis < 0 ? NULL : &f->table->axes[f->along_axis];
+    const bool is_alpha = axis && strstr(axis->name, ".alpha") != NULL;
+    bool ok = lq_along_make(&f->along, axis ? axis->nodes : &none, axis ? axis->size : 1, is_alpha);
+    for (int p = 0; p < LQ_ALONG_PANELS; p++) f->interpolates |= f->along.panel_used[p];
+    f->others = lq_table_entries(f->table) / cosines_of(f) / (axis ? axis->size : 1);
+    const size_t most = f->along.size + LQ_ALONG_PANELS * LQ_ALONG_POINTS;
+    f->solved = calloc(most * f->others * numbers_of(f) + 1, sizeof *f->solved);
+    f->errors = calloc(most * f->others + 1, sizeof *f->errors);
+    ok &= f->solved && f->errors;
+    return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu stacks", most * f->others);
+}
+
 static lq_status fill(filling *f, const lq_progress *progress, lq_error *error) {
-    const size_t turns = lq_table_entries(f->table) / f->table->axes[f->mu_axis].size;
-    f->errors = calloc(turns + 1, sizeof *f->errors);
-    if (!f->errors) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu stacks", turns);
-    lq_status status = lq_parallel(turns, f->query->threads, fill_turn, f, progress, error);
-    double worst = 0.0;
-    for (size_t i = 0; i < turns; i++) worst = fmax(worst, f->errors[i]);
-    free(f->errors);
+    lq_status status = allocate(f, error), again = LQ_OK;
+    if (status == LQ_OK) status = solve_turns(f, progress, error);
     if (status != LQ_OK && status != LQ_NOT_CONVERGED) return status;
-    const lq_status told = set_facts(f, error);
-    if (told != LQ_OK) return told;
-    if (set_error(f->table, worst, error) != LQ_OK) return LQ_NO_MEMORY;
-    return status == LQ_OK
-               ? LQ_OK
-               : lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance", worst);
+    const double left_out = settle_panels(f);
+    again = solve_turns(f, progress, error);
+    if (again != LQ_OK && again != LQ_NOT_CONVERGED) return again;
+    const double worst = store_all(f) + left_out;
+    status = set_facts(f, error);
+    if (status == LQ_OK) status = set_error(f->table, worst, error);
+    if (status != LQ_OK || worst <= tolerance_of(f)) return status;
+    return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance", worst);
 }
 
 lq_status lq_stack_precompute(const lq_stack *stack, const lq_stack_query *query, const lq_axis *axes,
@@ -172,6 +290,9 @@ lq_status lq_stack_precompute(const lq_stack *stack, const lq_stack_query *query
     if (status != LQ_OK) return status;
     f.table = *table;
     status = fill(&f, progress, error);
+    lq_along_free(&f.along);
+    free(f.solved);
+    free(f.errors);
     if (status == LQ_OK || status == LQ_NOT_CONVERGED) return status;
     lq_table_free(*table);
     *table = NULL;
