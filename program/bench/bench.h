@@ -70,4 +70,8 @@ lq_status bench_compress(const lq_kind *only, int threads, const lq_progress *pr
 /* The whole of `bench --report DIR`, of the kind of `like` or of all; returns the exit code. */
 int bench_report(const char *folder, const bench_job *like);
 
+/* `bench stack`, of the description in `path`, or (NULL) of those that are built in; `trusted`: it may open
+ * files and plugins. Returns the exit code. */
+int bench_stack(const bench_job *job, const char *path, bool trusted);
+
 #endif
