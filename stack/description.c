@@ -172,3 +172,17 @@ lq_status lq_stack_set(lq_stack *stack, const char *path, double value, lq_error
     }
     return LQ_OK;
 }
+
+/* "alpha" is found as alpha.x and sets alpha.y besides. */
+static bool sets_y(const char *path, const lq_parameter *which) {
+    return which->offset == offsetof(lq_layer, alpha_y) || strcmp(strchr(path, '.') + 1, "alpha") == 0;
+}
+
+bool lq_stack_overlap(const lq_stack *stack, const char *one, const char *other) {
+    lq_layer *layer[2] = {NULL, NULL};
+    const lq_parameter *which[2] = {NULL, NULL};
+    if (find(stack, one, &layer[0], &which[0], NULL) != LQ_OK ||
+        find(stack, other, &layer[1], &which[1], NULL) != LQ_OK || layer[0] != layer[1])
+        return false;
+    return which[0] == which[1] || (sets_y(one, which[0]) && sets_y(other, which[1]));
+}

@@ -35,6 +35,9 @@ const char *lq_layer_type_name(lq_layer_type type);
 /* A layer of that type with every parameter at what it is unless given. */
 lq_layer lq_layer_default(lq_layer_type type);
 
+/* Do two paths, which lq_stack_set accepts, set anything in common? "top.alpha", "1.alpha", "1.alpha.y". */
+bool lq_stack_overlap(const lq_stack *stack, const char *one, const char *other);
+
 /* Transmittance at normal incidence by absorption alone, and whether anything scatters besides. */
 double lq_medium_transmittance(const lq_medium *medium, int channel);
 bool lq_medium_scatters(const lq_medium *medium);

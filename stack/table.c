@@ -188,6 +188,17 @@ static double store_all(const filling *f) {
  *                                        Table
  * ====================================================================================== */
 
+/* The later of two axes of one parameter would hide the other. */
+static lq_status check_apart(const lq_stack *stack, const lq_axis *axes, int count, lq_error *error) {
+    for (int a = 0; a < count; a++)
+        for (int b = 0; b < a; b++)
+            if (lq_stack_overlap(stack, axes[b].name, axes[a].name))
+                return lq_fail(error, LQ_BAD_INPUT,
+                               "the axes '%s' and '%s' set the same parameter; accepted are different ones",
+                               axes[b].name, axes[a].name);
+    return LQ_OK;
+}
+
 static lq_status check_axes(const lq_stack *stack, const lq_axis *axes, int count, int *mu_axis,
                             lq_error *error) {
     lq_stack *trial = NULL;
@@ -202,6 +213,7 @@ static lq_status check_axes(const lq_stack *stack, const lq_axis *axes, int coun
             status = lq_stack_set(trial, axes[a].name, axes[a].nodes[i], error);
     }
     lq_stack_free(trial);
+    if (status == LQ_OK) status = check_apart(stack, axes, count, error);
     if (status == LQ_OK && *mu_axis < 0)
         status =
             lq_fail(error, LQ_BAD_INPUT, "a table of a stack needs the axis mu, the cosine of incidence");

@@ -80,6 +80,8 @@ lq_status lq_origin_of_facts(const lq_fact *list, size_t count, const lq_trust *
     const facts from = {list, count};
     const char *id = fact(&from, "table");
     if (!id) return lq_fail(error, LQ_FORMAT, "the table does not say of which kind it is");
+    if (strcmp(id, "stack") == 0) /* the layers say how it was made, not the facts read here */
+        return lq_fail(error, LQ_FORMAT, "it is a table of a stack, not of one of the kinds of lacquer list");
     origin->kind = lq_kind_find(id, error);
     return origin->kind ? read_settings(&from, origin->kind, trust, &origin->settings, error) : LQ_FORMAT;
 }

@@ -73,6 +73,9 @@ static int open_kind(const eval_request *request, const cli_given *given, eval_s
     lq_error error = {""};
     if (request->word_count == 0 || strchr(request->words[0], '='))
         return cli_fail("no table; usage: lacquer eval TABLE axis=value...; see lacquer list");
+    if (strcmp(request->words[0], "stack") == 0)
+        return cli_fail("a stack is no table to evaluate; use lacquer stack FILE.json, or --from FILE.exr of "
+                        "lacquer precompute stack");
     const lq_kind *kind = lq_kind_find(request->words[0], &error);
     if (!kind) return cli_fail("%s", error.text);
     if (!cli_settings_suit(given, kind)) return CLI_FAILED;

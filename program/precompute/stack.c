@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "program/light.h"
 #include "program/message.h"
 #include "program/output.h"
 #include "program/progress.h"
@@ -68,10 +69,20 @@ static int compute(const table_request *request, const lq_stack *stack, const lq
     return precompute_finish(request, table, status, &error, cli_seconds() - start);
 }
 
+/* The option itself accepts what any table does; 0: it was not given. */
+static bool tolerance_suits(double tolerance) {
+    if (tolerance == 0.0 || (tolerance >= CLI_STACK_TOLERANCE_MIN && tolerance <= CLI_STACK_TOLERANCE_MAX))
+        return true;
+    cli_message("--tolerance: a stack accepts %g to %g, not %g", CLI_STACK_TOLERANCE_MIN,
+                CLI_STACK_TOLERANCE_MAX, tolerance);
+    return false;
+}
+
 int precompute_stack(const table_request *request) {
     lq_axis axes[LQ_MAX_AXES];
     lq_stack *stack = NULL;
     lq_error error = {""};
+    if (!tolerance_suits(request->settings.settings.tolerance)) return CLI_FAILED;
     if (request->format >= FORMAT_ENDINGS)
         return cli_fail("--format: a published layout holds no stack; accepted: exr, npy");
     if (!request->stack) return cli_fail("no layers; add --stack FILE.json");
