@@ -150,7 +150,8 @@ idle fit report texture snippet family range points norm loss samples -- transmi
 tries=
 certificate='certificate on table parts junit report'
 light='mu interfaces from'
-idle bench csv svg full scattering masking -- --report /proc/x
+idle bench csv svg full scattering masking stack allow-plugin -- --report /proc/x
+idle bench svg points report ndf scattering masking -- stack --csv /proc/x
 idle validate against layout kind axes diagnose samples points seed budget $certificate \
     scattering masking tolerance $light -- hard-cases
 idle validate against layout kind axes diagnose points budget $certificate ndf scattering masking -- \
