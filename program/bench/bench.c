@@ -35,7 +35,7 @@ static const cli_option options[] = {
     {LONGEST, "samples", "N", "of the longest walk, up to 1e6 (default 1000000)",
      CLI_COUNT(bench_request, samples, 1000, 1000000)},
     {REPORT, "report", "DIR", "all tables, walks and compressions afresh, as one page: DIR/index.html",
-     CLI_TEXT(bench_request, report)},
+     CLI_TEXT(bench_request, report), .modes = ONE | ALL},
     {FULL, "full", NULL,
      "also the default grid (fgd: 64 x 64 x 64 x 64) and tolerance 1e-7; stack: a table of 64 x 64",
      CLI_FLAG(bench_request, job.full), .modes = ONE | STACK},
