@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static const double tolerance = 1e-4;
 
@@ -113,9 +114,13 @@ static lq_status run_table(const bench_stack_job *b, const lq_stack *stack, cons
 static lq_status run_once(bench_stack_job *b, bench_run *run, const lq_stack *stack, bench_stack_row *row,
                           const lq_progress *progress, lq_error *error) {
     const double start = cli_seconds();
+    const clock_t cpu = clock();
     const lq_status status = run(b, stack, progress, row, error);
     const double seconds = cli_seconds() - start;
-    row->fastest = row->runs ? fmin(row->fastest, seconds) : seconds;
+    if (!row->runs || seconds < row->fastest) {
+        row->fastest = seconds;
+        row->cpu = (double)(clock() - cpu) / CLOCKS_PER_SEC;
+    }
     row->slowest = row->runs ? fmax(row->slowest, seconds) : seconds;
     row->runs++;
     if (status == LQ_NOT_CONVERGED) row->above = true;

@@ -15,6 +15,7 @@ typedef struct bench_stack_row {
     int channels;
     size_t runs;
     double fastest, slowest; /* of the runs; wall clock, seconds */
+    double cpu;              /* seconds of all threads in the fastest; far below wall x threads: others ran */
     double error;            /* largest estimate; of a walk the largest standard error */
     double ratio; /* of a walk: its time at the solver's error / the solver's; of a solver of three channels:
                    * its time / that of the first channel alone; otherwise NAN */

@@ -14,8 +14,9 @@ static bool is(const bench_stack_row *row, const char *method) {
 }
 
 static void print_row(const bench_stack_row *row) {
-    printf("%-24s %-7s %8.0e %8zu %9d %6zu %10.3g %10.3g %10.2e\n", row->stack, row->method, row->setting,
-           row->entries, row->channels, row->runs, row->fastest, row->slowest, row->error);
+    printf("%-24s %-7s %8.0e %8zu %9d %6zu %10.3g %10.3g %8.3g %10.2e\n", row->stack, row->method,
+           row->setting, row->entries, row->channels, row->runs, row->fastest, row->slowest, row->cpu,
+           row->error);
 }
 
 /* The solver's row of the same stack comes before the walk's. */
@@ -44,14 +45,15 @@ void bench_stack_print(const bench_stack_job *b) {
     bench_describe_machine(b->job->threads, machine, sizeof machine);
     printf("stacks at %d cosines; walks of %.0f samples at cosine %g, seed %zu\n%s\n\n", BENCH_STACK_COSINES,
            b->job->longest_walk, BENCH_STACK_WALK_COSINE, b->job->seed, machine);
-    printf("%-24s %-7s %8s %8s %9s %6s %10s %10s %10s\n", "stack", "method", "setting", "entries", "channels",
-           "runs", "fastest s", "slowest s", "error");
+    printf("%-24s %-7s %8s %8s %9s %6s %10s %10s %8s %10s\n", "stack", "method", "setting", "entries",
+           "channels", "runs", "fastest s", "slowest s", "CPU s", "error");
     for (size_t i = 0; i < b->row_count; i++) print_row(&b->rows[i]);
     printf("\n");
     for (size_t i = 0; i < b->row_count; i++) print_ratio(b, i);
-    printf("\nSeconds are wall clock. The error of a solver is its largest estimate, that of a walk its\n"
-           "largest standard error (of a mean over a lobe: times its energy). The walk's time at the\n"
-           "solver's error is extrapolated: fastest x (its error / the solver's)^2 x cosines.\n");
+    printf("\nSeconds are wall clock, CPU those of all threads in the fastest run. The error of a solver is\n"
+           "its largest estimate, that of a walk its largest standard error (of a mean over a lobe: times\n"
+           "its energy). The walk's time at the solver's error is extrapolated: fastest x (its error / the\n"
+           "solver's)^2 x cosines.\n");
 }
 
 static lq_status write_row(const bench_stack_job *b, const bench_stack_row *row, lq_output *file,
@@ -61,9 +63,9 @@ static lq_status write_row(const bench_stack_job *b, const bench_stack_row *row,
     snprintf(name, sizeof name, "%s", row->stack);
     for (char *at = name; *at; at++)
         if (strchr(",\"\r\n", *at)) *at = '_'; /* a name may be any text, a field may not */
-    return lq_output_print(file, error, "%s,%s,%g,%zu,%d,%d,%zu,%.6g,%.6g,%.6g,%s\n", name, row->method,
+    return lq_output_print(file, error, "%s,%s,%g,%zu,%d,%d,%zu,%.6g,%.6g,%.6g,%.6g,%s\n", name, row->method,
                            row->setting, row->entries, row->channels, b->job->threads, row->runs,
-                           row->fastest, row->slowest, row->error, ratio);
+                           row->fastest, row->slowest, row->cpu, row->error, ratio);
 }
 
 lq_status bench_stack_write_csv(const bench_stack_job *b, lq_error *error) {
@@ -72,7 +74,7 @@ lq_status bench_stack_write_csv(const bench_stack_job *b, lq_error *error) {
     if (status != LQ_OK) return status;
     status = lq_output_print(file, error,
                              "stack,method,setting,entries,channels,threads,runs,wall_seconds,"
-                             "slowest_seconds,error,ratio\n");
+                             "slowest_seconds,cpu_seconds,error,ratio\n");
     for (size_t i = 0; status == LQ_OK && i < b->row_count; i++)
         status = write_row(b, &b->rows[i], file, error);
     if (status == LQ_OK) return lq_output_commit(file, error);
