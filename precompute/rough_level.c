@@ -98,7 +98,7 @@ static bool leaving_make(lq_leaving *l, const lq_ndf *ndf, double alpha, int cou
 
 /* `scale`: the cosine below which the nodes are dense. */
 static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale, const resolution *l,
-                                  const lq_level_splits *splits) {
+                                  const lq_level_splits *splits, bool refracts) {
     const size_t n = (size_t)(l->nodes * (splits->count + 1)), d = (size_t)l->depths;
     lq_rough_level *r = calloc(1, sizeof *r);
     if (!r) return NULL;
@@ -117,14 +117,14 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
     for (int i = 0; i < r->axis.count; i++) r->lambda[i] = lq_lambda(ndf, alpha, r->axis.mu[i]);
     r->theta_from = pow(1.0 + lq_lambda(ndf, alpha, LQ_GRAZING), -0.125);
     fill_travel(r);
-    fill_refracted(r);
+    if (refracts) fill_refracted(r);
     return r;
 }
 
 static lq_rough_level *level_with_leaving(const lq_ndf *ndf, double alpha, int level, int band) {
     const resolution *l = band >= NEARLY_MATCHED ? &matched[level] : &regular[level];
     const lq_level_splits none = {0};
-    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, &none);
+    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, &none, true);
     if (r && leaving_make(&r->leaving[0], ndf, alpha, leaving_nodes[level][0]) &&
         leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1]))
         return r;
@@ -187,5 +187,5 @@ const lq_rough_level *lq_rough_level_get(lq_rough *rough, double eta, int level)
 
 lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta, const lq_resolution *l,
                                     const lq_level_splits *splits) {
-    return level_make(ndf, alpha, ldexp(alpha, -band_of(alpha, eta)), l, splits);
+    return level_make(ndf, alpha, ldexp(alpha, eta > 0.0 ? -band_of(alpha, eta) : 0), l, splits, eta > 0.0);
 }

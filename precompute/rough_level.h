@@ -45,7 +45,8 @@ typedef struct lq_level_splits {
     double at[LQ_ELEMENTS_MAX];
 } lq_level_splits;
 
-/* A level of one's own, for an interface of relative index eta either way; its nodes are those of one element
+/* A level of one's own, for an interface of relative index eta either way (0: light is reflected alone, and
+ * lq_rough_level_refracted has no answer); its nodes are those of one element
  * of the axis. It has no leaving nodes. NULL without memory. */
 lq_rough_level *lq_rough_level_make(const lq_ndf *ndf, double alpha, double eta,
                                     const lq_resolution *resolution, const lq_level_splits *splits);

@@ -150,8 +150,7 @@ static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
     lq_resolution r = resolutions[level];
     r.nodes = nodes_each(s, level, splits.count + 1);
-    /* A conductor is like media that differ: no facet lets light go on almost undeviated. */
-    return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 2.0 : s->eta, &r, &splits);
+    return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 0.0 : s->eta, &r, &splits);
 }
 
 static void fill_survival(lq_surface_work *w) {

@@ -56,20 +56,50 @@ static lq_status no_memory(lq_error *error) {
 typedef lq_status bench_run(const bench_stack_job *b, const lq_stack *stack, const lq_progress *progress,
                             bench_stack_row *row, lq_error *error);
 
+/* `light` has room for all cosines and channels. */
+static lq_status solve(const bench_stack_job *b, const lq_stack *stack, double at, lq_stack_light *light,
+                       const lq_progress *progress, lq_error *error) {
+    double mu[BENCH_STACK_COSINES];
+    for (int i = 0; i < BENCH_STACK_COSINES; i++) mu[i] = (i + 0.5) / BENCH_STACK_COSINES;
+    const lq_stack_query query = {
+        .mu = mu, .mu_count = BENCH_STACK_COSINES, .tolerance = at, .threads = b->job->threads};
+    return lq_stack_solve(stack, &query, light, progress, error);
+}
+
 static lq_status run_solver(const bench_stack_job *b, const lq_stack *stack, const lq_progress *progress,
                             bench_stack_row *row, lq_error *error) {
-    double mu[BENCH_STACK_COSINES];
     const size_t count = BENCH_STACK_COSINES * (size_t)row->channels;
     lq_stack_light *light = calloc(count, sizeof *light);
     if (!light) return no_memory(error);
-    for (int i = 0; i < BENCH_STACK_COSINES; i++) mu[i] = (i + 0.5) / BENCH_STACK_COSINES;
-    const lq_stack_query query = {
-        .mu = mu, .mu_count = BENCH_STACK_COSINES, .tolerance = row->setting, .threads = b->job->threads};
-    const lq_status status = lq_stack_solve(stack, &query, light, progress, error);
+    const lq_status status = solve(b, stack, row->setting, light, progress, error);
     row->error = 0.0;
     for (size_t i = 0; i < count; i++) row->error = fmax(row->error, light[i].error);
     free(light);
     return status;
+}
+
+static double lobes_apart(const lq_stack_lobe *a, const lq_stack_lobe *b) {
+    const double sin2 = fabs(a->sin2 - b->sin2), mean = fabs(a->mean - b->mean);
+    const double means = fmax(sin2, fmax(mean, fabs(a->across - b->across)));
+    return fmax(fabs(a->energy - b->energy), b->energy * means);
+}
+
+/* What a solver is off by, which its estimate is meant to be above. */
+static lq_status measure_off(const bench_stack_job *b, const lq_stack *stack, bench_stack_row *row,
+                             lq_error *error) {
+    const size_t count = BENCH_STACK_COSINES * (size_t)row->channels;
+    lq_stack_light *light = calloc(2 * count, sizeof *light), *fine = light + count;
+    if (!light) return no_memory(error);
+    lq_status status = solve(b, stack, row->setting, light, NULL, error);
+    if (status == LQ_OK || status == LQ_NOT_CONVERGED)
+        status = solve(b, stack, row->setting / 50.0, fine, NULL, error);
+    row->off = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        row->off = fmax(row->off, lobes_apart(&light[i].reflected, &fine[i].reflected));
+        row->off = fmax(row->off, lobes_apart(&light[i].transmitted, &fine[i].transmitted));
+    }
+    free(light);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
 }
 
 /* The means over a lobe count by its energy: those of a faint one are noisy and say little. */
@@ -136,7 +166,7 @@ static lq_status measure(bench_stack_job *b, bench_run *run, size_t least, const
     for (size_t i = 0; i < count; i++) {
         rows[i] = *like;
         rows[i].channels = lq_stack_channels(stacks[i]);
-        rows[i].ratio = NAN;
+        rows[i].ratio = rows[i].off = NAN;
         snprintf(rows[i].stack, sizeof rows[i].stack, "%s", stacks[i]->name);
     }
     cli_progress_begin(&bar, like->method);
@@ -183,6 +213,7 @@ static lq_status measure_stack(bench_stack_job *b, const lq_stack *stack, lq_err
     bench_stack_row *rows = &b->rows[b->row_count];
     status = measure(b, run_solver, 3, pair, rgb ? 2 : 1, &solver, error);
     lq_stack_free(first);
+    if (status == LQ_OK) status = measure_off(b, stack, &rows[0], error);
     if (status == LQ_OK && rgb) rows[0].ratio = rows[0].fastest / rows[1].fastest;
     if (status == LQ_OK) status = measure(b, run_walk, 2, pair, 1, &walk, error);
     if (status != LQ_OK) return status;
@@ -192,7 +223,7 @@ static lq_status measure_stack(bench_stack_job *b, const lq_stack *stack, lq_err
 }
 
 double bench_stack_walk_seconds(const bench_stack_row *solver, const bench_stack_row *walk) {
-    const double samples = pow(walk->error / solver->error, 2.0);
+    const double samples = pow(walk->error / solver->off, 2.0);
     return walk->fastest / (double)walk->entries * samples * (double)solver->entries;
 }
 

@@ -17,6 +17,8 @@ typedef struct bench_stack_row {
     double fastest, slowest; /* of the runs; wall clock, seconds */
     double cpu;              /* seconds of all threads in the fastest; far below wall x threads: others ran */
     double error;            /* largest estimate; of a walk the largest standard error */
+    double off; /* of a solver: the largest difference from one 50 times as fine, otherwise NAN; means over a
+                 * lobe, like those of a walk, by its energy */
     double ratio; /* of a walk: its time at the solver's error / the solver's; of a solver of three channels:
                    * its time / that of the first channel alone; otherwise NAN */
     bool above;   /* an estimate is above the tolerance */
@@ -28,7 +30,7 @@ typedef struct bench_stack_job {
     size_t row_count;
 } bench_stack_job;
 
-/* Seconds of as long a walk at each of the solver's cosines as has the solver's error: that of a walk goes as
+/* Seconds of as long a walk at each of the solver's cosines that is off by as much: that of a walk goes as
  * 1/sqrt(samples), its time as the samples. */
 double bench_stack_walk_seconds(const bench_stack_row *solver, const bench_stack_row *walk);
 
