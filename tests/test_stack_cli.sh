@@ -244,9 +244,9 @@ says '^rgb.json: off by [0-9.e-]+, 64 cosines: solver .* s, walk .* s: [0-9.e+]+
     fail "rows of bench.csv: $(cat bench.csv)"
 awk -F, 'NR > 1 && !($8 > 0 && $9 >= $8 && $11 > 0 && ($12 > 0) == (NR == 2) && ($13 > 0) == (NR != 3)) { exit 1 }' bench.csv ||
     fail "figures of bench.csv: $(cat bench.csv)"
-# the extrapolation: as many samples as make the noise the error, at every cosine
-awk -F, 'NR == 2 { s = $8; e = $11 } NR == 4 { r = $8 * ($11 / e) ^ 2 * 64 / s
-    exit !((r / $12 - 1) ^ 2 < 1e-6) }' bench.csv || fail "ratio of bench.csv: $(cat bench.csv)"
+# the extrapolation: as many samples as make the noise what the solver is off by, at every cosine
+awk -F, 'NR == 2 { s = $8; e = $12 } NR == 4 { r = $8 * ($11 / e) ^ 2 * 64 / s
+    exit !((r / $13 - 1) ^ 2 < 1e-6) }' bench.csv || fail "ratio of bench.csv: $(cat bench.csv)"
 refused "one TABLE" bench stack fgd
 refused "one TABLE" bench fgd stack
 refused '--stack has no effect for a table' bench fgd --stack "$slab"
