@@ -13,7 +13,7 @@ static size_t variants(const lq_facet_sums *f) {
 }
 
 static double *moments_of(const lq_facet_sums *f, int part, size_t variant) {
-    return f->moments + ((size_t)part * variants(f) + variant) * LQ_NODES_MAX;
+    return f->moments + ((size_t)part * variants(f) + variant) * f->stride;
 }
 
 /* Facets of one fan that send light to one part of directions, weighed for every mode. */
@@ -109,7 +109,11 @@ static void add_refraction(void *user, const lq_fan *fan) {
 static const double SINE_MIN = 1e-8;
 
 lq_status lq_facet_sums_make(lq_facet_sums *f, lq_error *error) {
-    f->moments = lq_zeros(LQ_PARTS * variants(f) * LQ_NODES_MAX);
+    f->stride = (size_t)f->nodes->count;
+    for (int i = 0; i < 2; i++)
+        if (f->leaving[i] && (size_t)f->leaving[i]->count > f->stride)
+            f->stride = (size_t)f->leaving[i]->count;
+    f->moments = lq_zeros(LQ_PARTS * variants(f) * f->stride);
     if (!f->moments) return lq_fail(error, LQ_NO_MEMORY, "no memory for a row of an interface");
     f->sine = fmax(lq_sine(fabs(f->v_z)), SINE_MIN);
     f->area = f->masked ? lq_area_above(f->ndf, f->alpha, f->v_z, f->sine) : 0.0;

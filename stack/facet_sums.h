@@ -34,7 +34,8 @@ typedef struct lq_facet_sums {
     bool masked; /* light arrives from outside: ESCAPES has the masking of each facet, RISES what it stops */
     /* Results and work. */
     double sine, area, total;
-    double *moments; /* [(part * variants + material * LQ_MODES + mode) * LQ_NODES_MAX + m] */
+    size_t stride;   /* the longest axis */
+    double *moments; /* [(part * variants + material * LQ_MODES + mode) * stride + m] */
 } lq_facet_sums;
 
 /* LQ_NO_MEMORY; free it on LQ_OK. */

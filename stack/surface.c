@@ -407,8 +407,9 @@ static void load_source(const lq_surface_work *w, size_t v, size_t column, size_
     }
 }
 
-/* What the passes that are not made may add up to. */
-static const double SETTLED = 1e-12;
+/* What the passes that are not made may add up to; the rows of a dielectric are scaled to all light
+ * afterwards. */
+static const double SETTLED = 1e-9, SETTLED_OPAQUE = 1e-12;
 
 lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
     const size_t v = batch / batches_of_one(w), first = batch % batches_of_one(w) * LQ_LANES;
@@ -427,7 +428,7 @@ lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
         hits.rise[s] = w->rise[s] + rows;
     }
     for (size_t l = 0; l < LQ_LANES && first + l < w->columns; l++) load_source(w, v, first + l, l, source);
-    const bool settled = lq_hits_solve(&hits, &x, SETTLED);
+    const bool settled = lq_hits_solve(&hits, &x, w->spec.opaque ? SETTLED_OPAQUE : SETTLED);
     if (settled) read_batch(w, v, first, &x);
     lq_hits_values_free(&x);
     free(source);
