@@ -82,7 +82,7 @@ bool lq_node_axis_make_divided(lq_node_axis *axis, double alpha, lq_sense sense,
 }
 
 bool lq_node_axis_make_roots(lq_node_axis *axis, const lq_root_element *elements, int count, int nodes) {
-    double bounds[LQ_ELEMENTS_MAX];
+    double bounds[LQ_ELEMENTS_MAX] = {0.0};
     for (int e = 0; e < count; e++) bounds[e] = elements[e].to;
     start_axis(axis, bounds, count - 1, nodes);
     for (int e = 0; e < count; e++) {

@@ -103,8 +103,8 @@ static void make_kinks(lq_surface_work *w) {
 
 /* No two levels share a resolution that could be what limits both. */
 static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
-    {12, 20, 8, 12},  {16, 24, 10, 16}, {20, 28, 14, 20}, {28, 32, 18, 26},
-    {40, 36, 26, 34}, {56, 40, 36, 46}, {84, 44, 52, 60}};
+    {12, 20, 10, 16}, {16, 24, 12, 20}, {20, 28, 16, 24}, {28, 32, 20, 30},
+    {40, 36, 26, 36}, {56, 40, 36, 46}, {84, 44, 52, 60}};
 
 enum { FEWEST_NODES = 8, FEWEST_SMALL = 12, SPLITS_MAX = 3 };
 
