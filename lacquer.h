@@ -636,6 +636,12 @@ int lq_stack_channels(const lq_stack *stack);
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error);
 
+/* How many paths leave no more than `least` of the light to the last one, at every cosine and channel of the
+ * query (its own paths are not read): 2 to LQ_STACK_PATHS_MAX, from the coarsest level. */
+enum { LQ_STACK_PATHS_MAX = 64 };
+lq_status lq_stack_count_paths(const lq_stack *stack, const lq_stack_query *query, double least,
+                               size_t *paths, lq_error *error);
+
 /* A table over "mu" and any parameters of the layers, named as by lq_stack_set ("top.alpha"); `query` says
  * the rest, its cosines and paths are not read. Channels: reflected, sin2, mean and across, then the same of
  * transmitted light where there is some; of a stack in RGB the energies alone, reflected.r, .g and .b,

@@ -72,3 +72,37 @@ lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_
     lq_plan_free(&plan);
     return status;
 }
+
+/* The fewest paths after which no more than `least` is left, of one cosine and channel. */
+static size_t paths_of(const lq_stack_light *light, double least) {
+    double left = 0.0;
+    for (size_t p = LQ_STACK_PATHS_MAX; p-- > 1;) {
+        left += light[p].reflected.energy + light[p].transmitted.energy;
+        if (left > least) return p + 2 < LQ_STACK_PATHS_MAX ? p + 2 : LQ_STACK_PATHS_MAX;
+    }
+    return 2;
+}
+
+lq_status lq_stack_count_paths(const lq_stack *stack, const lq_stack_query *query, double least,
+                               size_t *paths, lq_error *error) {
+    lq_stack_query every = *query;
+    lq_plan plan;
+    lq_status status = check(query, error);
+    if (status == LQ_OK)
+        status =
+            lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
+    if (status != LQ_OK) return status;
+    every.paths = LQ_STACK_PATHS_MAX;
+    const size_t lines = query->mu_count * (size_t)plan.channels;
+    lq_stack_light *light = malloc((lines * LQ_STACK_PATHS_MAX + 1) * sizeof *light);
+    status = light ? lq_stack_level(&plan, &every, 0, light, NULL, error)
+                   : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", query->mu_count);
+    *paths = 2;
+    for (size_t i = 0; status == LQ_OK && i < lines; i++) {
+        const size_t needed = paths_of(light + i * LQ_STACK_PATHS_MAX, least);
+        *paths = needed > *paths ? needed : *paths;
+    }
+    free(light);
+    lq_plan_free(&plan);
+    return status;
+}

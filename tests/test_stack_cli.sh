@@ -68,9 +68,11 @@ cmp -s one out || fail "the light depends on --threads: $(diff one out)"
 run 0 stack "$metal" --format csv --mu 0.5
 says "^0\.5,0,0\.84[0-9]+,(,$number){3},,,,$number$"
 whole=$(field 2 3)
-run 0 stack "$metal" --format csv --mu 0.5 --paths 3
+run 0 stack "$metal" --format csv --mu 0.5 --paths
 [ "$(head -n 1 out)" = "$header,path" ] || fail "CSV header with --paths: $(head -n 1 out)"
-[ "$(tail -n +2 out | cut -d, -f12 | xargs)" = '1 2 3' ] || fail "not three paths: $(cat out)"
+[ "$(tail -n +2 out | cut -d, -f12 | xargs)" = "$(seq -s ' ' "$(tail -n +2 out | wc -l)")" ] ||
+    fail "paths are not counted from 1: $(cat out)"
+awk -F, 'NR > 1 { light = $3; n++ } END { exit !(n >= 3 && light < 0.01) }' out || fail "the last path: $(cat out)"
 near "$(awk -F, 'NR > 1 { sum += $3 } END { print sum }' out)" "$whole" 'the paths do not make up the light'
 [ "$(awk -F, '{ print NF }' out | sort -u)" = 12 ] || fail "rows of --paths with other than 12 fields: $(cat out)"
 
@@ -92,11 +94,11 @@ says '^0\.5 +0\.1222'
 run 0 stack "$metal"
 [ "$(tail -n +2 out | awk '{ print $1 }' | xargs)" = '1 0.6 0.15' ] || fail "default cosines: $(cat out)"
 grep -q transm out && fail "text of an opaque stack shows transmitted light"
-run 0 stack "$slab" --mu 0.5 --from below --interfaces single --paths 2 --format json
+run 0 stack "$slab" --mu 0.5 --from below --interfaces single --paths --format json
 says '"from": "below"'
 says '"interfaces": "single"'
 says '"path": 2'
-python3 -c 'import json; light = json.load(open("out"))["light"]; assert len(light) == 2, light
+python3 -c 'import json; light = json.load(open("out"))["light"]; assert len(light) >= 2, light
 assert all({"mu", "channel", "reflected", "transmitted", "error", "path"} == set(l) for l in light), light
 assert {"energy", "sin2", "mean", "across"} == set(light[0]["reflected"]), light' || fail "JSON: $(cat out)"
 
@@ -120,7 +122,7 @@ refused "--mu: '1.5' is not a number from 0 to 1" stack "$slab" --mu 0.5,1.5
 refused "--mu: 'half' is not a number" stack "$slab" --mu half
 refused "--mu: '' is not a number" stack "$slab" --mu 0.5,
 refused '--mu: accepted: up to 256 cosines' stack "$slab" --mu "$(seq -s, 0 0.003 1)"
-refused "--paths: '0' is not a whole number from 1 to 64" stack "$slab" --paths 0
+refused "one stack at a time, not '3' too" stack "$slab" --paths 3
 refused "'xml' is not one of: text, csv, json" stack "$slab" --format xml
 refused "'side' is not one of: above, below" stack "$slab" --from side
 

@@ -15,7 +15,15 @@
 #include <string.h>
 #include <strings.h>
 
-enum { OPTION_AXIS = 256, OPTION_FORMAT, OPTION_STACK, OPTION_INTERFACES, OPTION_FROM, OPTION_OUTPUT = 'o' };
+enum {
+    OPTION_AXIS = 256,
+    OPTION_FORMAT,
+    OPTION_STACK,
+    OPTION_INTERFACES,
+    OPTION_FROM,
+    OPTION_TRUST,
+    OPTION_OUTPUT = 'o'
+};
 enum { KIND = 1, STACK = 2 }; /* modes */
 
 static const char *const formats[FORMATS + 1] = {"exr", "npy", "belcour", "tm", "mitsuba", NULL};
@@ -35,6 +43,9 @@ static const cli_option options[] = {
      CLI_CHOICE(table_request, interfaces, cli_interfaces), .modes = STACK},
     {OPTION_FROM, "from", "above|below", "of table stack: where the light comes from (default above)",
      CLI_CHOICE(table_request, from, cli_sides), .modes = STACK},
+    {OPTION_TRUST, "allow-plugin", NULL,
+     "of table stack: open the NDF files and run the plugins that it names", CLI_FLAG(table_request, trusted),
+     .modes = STACK, .silent = true},
     CLI_NDF_OPTION(table_request, KIND),
     CLI_SCATTERING_OPTION(table_request, KIND),
     CLI_MASKING_OPTION(table_request, KIND),

@@ -26,6 +26,7 @@ typedef struct table_request {
     const char *output;
     const char *stack; /* of table stack, like the two below */
     int interfaces, from;
+    bool trusted;
     char *command; /* what determines the table, as a command line; owned */
 } table_request;
 

@@ -87,7 +87,8 @@ int precompute_stack(const table_request *request) {
         return cli_fail("--format: a published layout holds no stack; accepted: exr, npy");
     if (!request->stack) return cli_fail("no layers; add --stack FILE.json");
     if (!cli_output_check(request->output)) return CLI_FAILED;
-    const lq_status status = lq_stack_read(&stack, request->stack, 0, &error);
+    const lq_status status =
+        lq_stack_read(&stack, request->stack, request->trusted ? LQ_STACK_TRUSTED : 0, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     const int count = read_axes(request, stack, axes);
     const int code = count < 0 ? CLI_FAILED : compute(request, stack, axes, count);

@@ -13,13 +13,13 @@
 
 enum { OPTION_FORMAT = 256, OPTION_PATHS, OPTION_TOLERANCE, OPTION_TRUST };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
-enum { MAX_PATHS = 64 };
 
 typedef struct stack_request {
     const char *path;
     cli_light light;
     int format;
-    size_t paths, threads;
+    bool paths;
+    size_t threads;
     double tolerance;
     bool trusted;
 } stack_request;
@@ -30,8 +30,8 @@ static const cli_option options[] = {
     CLI_LIGHT_OPTIONS(stack_request, 0),
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
-    {OPTION_PATHS, "paths", "N", "split light by how often it met the first interface: 1, 2, ... N or more",
-     CLI_COUNT(stack_request, paths, 1, MAX_PATHS)},
+    {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
+     CLI_FLAG(stack_request, paths)},
     {OPTION_TOLERANCE, "tolerance", "T", "absolute error of every number (default 1e-4)",
      CLI_NUMBER(stack_request, tolerance, CLI_STACK_TOLERANCE_MIN, CLI_STACK_TOLERANCE_MAX)},
     {OPTION_TRUST, "allow-plugin", NULL, "open the NDF files and run the plugins that the stack names",
@@ -57,16 +57,21 @@ static int print(const stack_request *request, const stack_result *result) {
     return CLI_DONE;
 }
 
+/* What the last path of --paths may hold. */
+static const double LAST_PATH = 0.01;
+
 static int solve(const stack_request *request, const lq_stack *stack) {
     lq_stack_query query = cli_light_query(&request->light);
-    query.paths = request->paths;
+    lq_error error = {""};
     query.tolerance = request->tolerance;
     query.threads = (int)request->threads;
+    const lq_status counted =
+        request->paths ? lq_stack_count_paths(stack, &query, LAST_PATH, &query.paths, &error) : LQ_OK;
+    if (counted != LQ_OK) return cli_fail_status(counted, &error);
     const int channels = lq_stack_channels(stack);
-    const size_t paths = request->paths ? request->paths : 1;
+    const size_t paths = query.paths ? query.paths : 1;
     lq_stack_light *light = calloc(query.mu_count * (size_t)channels * paths, sizeof *light);
     if (!light) return cli_fail("out of memory");
-    lq_error error = {""};
     cli_progress bar;
     cli_progress_begin(&bar, "stack");
     const lq_status status = lq_stack_solve(stack, &query, light, &bar.progress, &error);
@@ -100,6 +105,7 @@ static void print_notes(FILE *out) {
         "light that leaves on either side sin2 = E[sin^2 theta], mean = E[sin theta cos phi] (positive away\n"
         "from the light) and across = E[sin^2 theta sin^2 phi]. `error` is an estimate for every number of\n"
         "its line, never meant to be too small. CSV leaves a field empty where there is no such light.\n"
+        "--paths goes on until no more than a hundredth of the light is left; its last line holds that.\n"
         "FILE.json describes layers from the top; see docs/stacks.md.\n"
         "Exit 2: printed, but some estimate is above the tolerance.\n\n");
 }
@@ -112,7 +118,7 @@ const cli_verb cli_verb_stack = {
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer stack recipes/stacks/frosted-metal.json --mu 1,0.6,0.15\n"
-                "lacquer stack recipes/stacks/frosted-metal.json --paths 3 --format csv\n"
+                "lacquer stack recipes/stacks/frosted-metal.json --paths --format csv\n"
                 "lacquer stack recipes/stacks/slab.json --from below --tolerance 1e-6",
     .run = run,
 };
