@@ -92,7 +92,7 @@ static lq_status measure_off(const bench_stack_job *b, const lq_stack *stack, be
     if (!light) return no_memory(error);
     lq_status status = solve(b, stack, row->setting, light, NULL, error);
     if (status == LQ_OK || status == LQ_NOT_CONVERGED)
-        status = solve(b, stack, row->setting / 50.0, fine, NULL, error);
+        status = solve(b, stack, row->setting / 10.0, fine, NULL, error);
     row->off = 0.0;
     for (size_t i = 0; i < count; i++) {
         row->off = fmax(row->off, lobes_apart(&light[i].reflected, &fine[i].reflected));

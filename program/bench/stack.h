@@ -17,7 +17,7 @@ typedef struct bench_stack_row {
     double fastest, slowest; /* of the runs; wall clock, seconds */
     double cpu;              /* seconds of all threads in the fastest; far below wall x threads: others ran */
     double error;            /* largest estimate; of a walk the largest standard error */
-    double off; /* of a solver: the largest difference from one 50 times as fine, otherwise NAN; means over a
+    double off; /* of a solver: the largest difference from one ten times as fine, otherwise NAN; means over a
                  * lobe, like those of a walk, by its energy */
     double ratio; /* of a walk: its time at the solver's error / the solver's; of a solver of three channels:
                    * its time / that of the first channel alone; otherwise NAN */

@@ -53,7 +53,7 @@ void bench_stack_print(const bench_stack_job *b) {
     printf(
         "\nSeconds are wall clock, CPU those of all threads in the fastest run. The error of a solver is\n"
         "its largest estimate, that of a walk its largest standard error; a solver is off by its largest\n"
-        "difference from one 50 times as fine (means over a lobe, of both: times its energy). The time of\n"
+        "difference from one ten times as fine (means over a lobe, of both: times its energy). The time of\n"
         "a walk that is off by as much is extrapolated: fastest x (its error / off by)^2 x cosines.\n");
 }
 
