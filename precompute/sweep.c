@@ -2,6 +2,7 @@
 #include "precompute/evaluator.h"
 
 #include "system/status.h"
+#include "tables/facts.h"
 
 #include <math.h>
 #include <omp.h>
@@ -121,22 +122,6 @@ static void run(sweep *s, int threads) {
 
 /* ---------------------------------------------------------------------------------- facts */
 
-static lq_status set_number(lq_table *table, const char *key, double value, lq_error *error) {
-    char text[32];
-    snprintf(text, sizeof text, "%.3g", value);
-    return lq_table_set_fact(table, key, text, error);
-}
-
-/* Three digits, never below the value, for an error must not be rounded down, and no further above it than
- * the next of three digits: what kept a tolerance must not seem to break it. */
-static lq_status set_bound(lq_table *table, const char *key, double value, lq_error *error) {
-    const double unit = value > 0.0 ? pow(10.0, floor(log10(value)) - 2.0) : 1.0;
-    return set_number(table, key, ceil(value / unit * (1.0 - 1e-12)) * unit, error);
-}
-
-/* Half a unit in the last place of values up to 1, in float32. */
-static const double storage_rounding = 3e-8;
-
 static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, lq_error *error) {
     const struct {
         const char *key, *value;
@@ -158,9 +143,9 @@ static lq_status set_facts(lq_table *table, const lq_job *job, double estimate, 
     for (size_t i = 0; status == LQ_OK && i < sizeof facts / sizeof facts[0]; i++)
         if (facts[i].value && (!facts[i].takes || (facts[i].takes & job->kind->takes)))
             status = lq_table_set_fact(table, facts[i].key, facts[i].value, error);
-    if (status == LQ_OK) status = set_number(table, "tolerance", job->tolerance, error);
-    if (status == LQ_OK) status = set_bound(table, "error", estimate, error);
-    if (status == LQ_OK) status = set_bound(table, "rounding", storage_rounding, error);
+    if (status == LQ_OK) status = lq_table_set_number(table, "tolerance", job->tolerance, error);
+    if (status == LQ_OK) status = lq_table_set_bound(table, "error", estimate, error);
+    if (status == LQ_OK) status = lq_table_set_bound(table, "rounding", LQ_STORAGE_ROUNDING, error);
     return status;
 }
 

@@ -73,10 +73,9 @@ lq_status lq_block_trapped(double *m, size_t size, double *x, size_t count, lq_e
                     : LQ_OK;
 }
 
-/* Rows times what a crossing of the medium leaves at each node of a row. */
-static void cross(double *matrix, const double *crossing, size_t rows, size_t nodes) {
-    for (size_t i = 0; i < rows; i++)
-        for (size_t j = 0; j < nodes; j++) matrix[i * nodes + j] *= crossing[j];
+void lq_block_there_and_back(const double *r, const double *crossing, size_t size, double *out) {
+    for (size_t i = 0; i < size; i++)
+        for (size_t j = 0; j < size; j++) out[i * size + j] = crossing[i] * r[i * size + j] * crossing[j];
 }
 
 /* What light at the nodes of the medium is worth that sets out towards block `to` (and then meets `from` and
@@ -85,17 +84,13 @@ static void cross(double *matrix, const double *crossing, size_t rows, size_t no
 static lq_status held(const lq_block *from, int f, const lq_block *to, const double *crossing, double **value,
                       lq_error *error) {
     const size_t n = from->nodes[f], back = from->nodes[1 - f], on = to->nodes[f], wide = back + on;
-    double *memory = malloc((3 * n * n + n * back + n * wide + 1) * sizeof *memory);
+    double *memory = malloc((2 * n * n + n * back + n * wide + 1) * sizeof *memory);
     *value = NULL;
     if (!memory) return no_memory(error);
-    double *there = memory, *again = there + n * n, *m = again + n * n, *out = m + n * n, *x = out + n * back;
+    double *there = memory, *m = there + n * n, *out = m + n * n, *x = out + n * back;
     /* Down to `to`, reflected, up to `from`: what waits there, reflected again or let through. */
-    memcpy(there, to->r[1 - f], n * n * sizeof *there);
-    cross(there, crossing, n, n);
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) there[i * n + j] *= crossing[i];
-    memcpy(again, from->r[f], n * n * sizeof *again);
-    lq_matrix_product(there, again, n, n, n, m);
+    lq_block_there_and_back(to->r[1 - f], crossing, n, there);
+    lq_matrix_product(there, from->r[f], n, n, n, m);
     lq_matrix_product(there, from->t[f], n, n, back, out);
     for (size_t i = 0; i < n; i++) {
         memcpy(x + i * wide, out + i * back, back * sizeof *x);
@@ -131,28 +126,28 @@ static lq_status add_half(const lq_block *near, int s, const lq_block *far, cons
 
 lq_status lq_block_add(const lq_block *above, const double *crossing, const lq_block *below, lq_block *sum,
                        lq_error *error) {
-    lq_status status = LQ_NO_MEMORY;
-    if (lq_block_make(sum, above->entries[0], below->entries[1], above->nodes[0], below->nodes[1]))
-        status = add_half(above, 0, below, crossing, sum, error);
+    lq_status status =
+        lq_block_make(sum, above->entries[0], below->entries[1], above->nodes[0], below->nodes[1])
+            ? add_half(above, 0, below, crossing, sum, error)
+            : no_memory(error);
     if (status == LQ_OK) status = add_half(below, 1, above, crossing, sum, error);
     if (status != LQ_OK) lq_block_free(sum);
     return status;
 }
 
-static lq_status copy(const lq_block *from, lq_block *to, lq_error *error) {
+lq_status lq_block_copy(const lq_block *from, lq_block *to, lq_error *error) {
     const lq_block_rows all = {.count = {from->entries[0], from->entries[1]}};
     const lq_status status = lq_block_part(from, &all, to, error);
     if (status != LQ_OK) lq_block_free(to);
     return status;
 }
 
-/* *pile = *pile over *more, both kept by the caller. */
-static lq_status put_under(lq_block *pile, const double *crossing, const lq_block *more, lq_error *error) {
-    lq_block sum;
-    const lq_status status = lq_block_add(pile, crossing, more, &sum, error);
+lq_status lq_block_append(lq_block *sum, const double *crossing, const lq_block *more, lq_error *error) {
+    lq_block added;
+    const lq_status status = lq_block_add(sum, crossing, more, &added, error);
     if (status != LQ_OK) return status;
-    lq_block_free(pile);
-    *pile = sum;
+    lq_block_free(sum);
+    *sum = added;
     return LQ_OK;
 }
 
@@ -160,15 +155,15 @@ lq_status lq_block_repeat(const lq_block *block, const double *crossing, size_t 
                           lq_error *error) {
     lq_block power;
     bool started = count & 1;
-    lq_status status = copy(block, &power, error);
+    lq_status status = lq_block_copy(block, &power, error);
     if (status != LQ_OK) return status;
-    if (started) status = copy(block, sum, error);
+    if (started) status = lq_block_copy(block, sum, error);
     started &= status == LQ_OK;
     for (size_t left = count >> 1; left > 0 && status == LQ_OK; left >>= 1) {
-        status = put_under(&power, crossing, &power, error);
+        status = lq_block_append(&power, crossing, &power, error);
         if (status != LQ_OK || !(left & 1)) continue;
-        if (started) status = put_under(sum, crossing, &power, error);
-        else status = copy(&power, sum, error);
+        if (started) status = lq_block_append(sum, crossing, &power, error);
+        else status = lq_block_copy(&power, sum, error);
         started |= status == LQ_OK;
     }
     lq_block_free(&power);

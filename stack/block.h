@@ -35,6 +35,12 @@ lq_status lq_block_part(const lq_block *all, const lq_block_rows *rows, lq_block
 lq_status lq_block_add(const lq_block *above, const double *crossing, const lq_block *below, lq_block *sum,
                        lq_error *error);
 
+/* *sum = *sum over *more, which may be the same; *sum is kept as it was on failure. */
+lq_status lq_block_append(lq_block *sum, const double *crossing, const lq_block *more, lq_error *error);
+
+/* On failure `to` holds nothing. */
+lq_status lq_block_copy(const lq_block *from, lq_block *to, lq_error *error);
+
 /* `count` >= 1 times the same block, which has the medium of `crossing` below every copy but the last, by
  * doubling: log2 additions. */
 lq_status lq_block_repeat(const lq_block *block, const double *crossing, size_t count, lq_block *sum,
@@ -43,6 +49,9 @@ lq_status lq_block_repeat(const lq_block *block, const double *crossing, size_t 
 /* Light between two mirrors: columns of x (size x count) are replaced by the solutions y of y = m y + x. m,
  * which gains no energy, is overwritten. LQ_NO_MEMORY; LQ_NOT_CONVERGED: there is none. */
 lq_status lq_block_trapped(double *m, size_t size, double *x, size_t count, lq_error *error);
+
+/* out = D r D, D = diag(crossing): across a medium, reflected, and back. */
+void lq_block_there_and_back(const double *r, const double *crossing, size_t size, double *out);
 
 /* c = a b; a is rows x inner, b inner x columns. */
 void lq_matrix_product(const double *a, const double *b, size_t rows, size_t inner, size_t columns,

@@ -44,6 +44,6 @@ bool lq_medium_scatters(const lq_medium *medium);
 
 /* LQ_BAD_INPUT: an anisotropic interface, a medium that scatters, a range, or light from below an opaque
  * base. */
-lq_status lq_stack_solvable(const lq_stack *stack, bool from_below, lq_error *error);
+lq_status lq_stack_solvable(const lq_stack *stack, const lq_stack_query *query, lq_error *error);
 
 #endif

@@ -4,6 +4,9 @@
 
 #include "stack/plan.h"
 
+/* What a query asks for, the default where it asks for nothing. */
+double lq_stack_tolerance(const lq_stack_query *query);
+
 /* What is asked of every channel: light as in lq_stack_solve, its errors left alone. LQ_NOT_CONVERGED: this
  * level is too fine for some interface. */
 lq_status lq_stack_level(const lq_plan *plan, const lq_stack_query *query, int level, lq_stack_light *light,

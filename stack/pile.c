@@ -64,26 +64,11 @@ static run find_run(const lq_plan_chain *c, size_t from) {
  *                                       Adding
  * ====================================================================================== */
 
-/* *sum = *sum over *more. */
-static lq_status append(lq_block *sum, const double *crossing, const lq_block *more, lq_error *error) {
-    lq_block added;
-    const lq_status status = lq_block_add(sum, crossing, more, &added, error);
-    if (status != LQ_OK) return status;
-    lq_block_free(sum);
-    *sum = added;
-    return LQ_OK;
-}
-
-static lq_status copy(const lq_block *from, lq_block *to, lq_error *error) {
-    const lq_block_rows all = {.count = {from->entries[0], from->entries[1]}};
-    return lq_block_part(from, &all, to, error);
-}
-
 /* A run of steps as one block; free it in either case. */
 static lq_status add_run(const lq_pile *pile, size_t from, const run *r, lq_block *sum, lq_error *error) {
-    lq_status status = copy(&pile->block[from], sum, error);
+    lq_status status = lq_block_copy(&pile->block[from], sum, error);
     for (size_t i = from + 1; i < from + r->period && status == LQ_OK; i++)
-        status = append(sum, pile->crossing[i], &pile->block[i], error);
+        status = lq_block_append(sum, pile->crossing[i], &pile->block[i], error);
     if (status != LQ_OK || r->times == 1) return status;
     lq_block all = {0};
     status = lq_block_repeat(sum, pile->crossing[from + r->period], r->times, &all, error);
@@ -100,7 +85,7 @@ static lq_status add_rest(const lq_pile *pile, lq_block *rest, lq_error *error) 
         const run r = find_run(pile->chain, i);
         lq_block next = {0};
         status = add_run(pile, i, &r, i == 1 ? rest : &next, error);
-        if (status == LQ_OK && i > 1) status = append(rest, pile->crossing[i], &next, error);
+        if (status == LQ_OK && i > 1) status = lq_block_append(rest, pile->crossing[i], &next, error);
         lq_block_free(&next);
         i += r.period * r.times;
     }
@@ -118,6 +103,7 @@ typedef struct walk {
     const lq_pile *pile;
     size_t paths, nodes; /* nodes of the medium below the first step */
     double *below;       /* D r D of the rest: nodes x nodes */
+    double *again;       /* the same after a reflection off the first step from below */
     double *value;       /* nodes x COLUMNS: light below the first step that sets out downwards */
     double *next;        /* likewise */
     double *values;      /* result */
@@ -145,22 +131,10 @@ static void rewarded(const double *matrix, size_t rows, size_t nodes, const doub
         }
 }
 
-/* value = M value, or with `all` the sum of M^k value, M = below r21: one more reflection off the first step
- * from below, or any number of them. */
-static lq_status reflect(walk *w, bool all, lq_error *error) {
-    const size_t n = w->nodes;
-    double *m = malloc(n * n * sizeof *m);
-    if (!m) return no_memory(error);
-    lq_matrix_product(w->below, w->pile->block[0].r[1], n, n, n, m);
-    lq_status status = LQ_OK;
-    if (all) {
-        status = lq_block_trapped(m, n, w->value, COLUMNS, error);
-    } else {
-        lq_matrix_product(m, w->value, n, n, COLUMNS, w->next);
-        memcpy(w->value, w->next, n * COLUMNS * sizeof *w->value);
-    }
-    free(m);
-    return status;
+/* value = M value, M = below r21: one more reflection off the first step from below. */
+static void reflect(walk *w) {
+    lq_matrix_product(w->again, w->value, w->nodes, w->nodes, COLUMNS, w->next);
+    memcpy(w->value, w->next, w->nodes * COLUMNS * sizeof *w->value);
 }
 
 /* What light below the first step is worth that meets it no more (beyond), or once, to leave. */
@@ -168,9 +142,8 @@ static void start(walk *w, const lq_block *rest, const double *crossing, const d
                   const double *reward_beyond) {
     const lq_block *top = &w->pile->block[0];
     const size_t n = w->nodes;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            w->below[i * n + j] = crossing[i] * rest->r[0][i * n + j] * crossing[j];
+    lq_block_there_and_back(rest->r[0], crossing, n, w->below);
+    lq_matrix_product(w->below, top->r[1], n, n, n, w->again);
     rewarded(top->t[1], n, top->nodes[0], reward, 0, COLUMNS, w->next);
     lq_matrix_product(w->below, w->next, n, n, COLUMNS, w->value);
     rewarded(rest->t[0], n, rest->nodes[1], reward_beyond, 2, COLUMNS, w->value);
@@ -185,12 +158,12 @@ static lq_status split(walk *w, lq_error *error) {
     lq_status status = masked ? LQ_OK : no_memory(error);
     for (size_t p = 0; p < w->paths && status == LQ_OK; p++) {
         const bool last = p + 1 == w->paths;
-        if (last) status = reflect(w, true, error);
+        if (last) status = lq_block_trapped(w->again, n, w->value, COLUMNS, error); /* any number of them */
         for (size_t side = 0; side < 2 && status == LQ_OK; side++) {
             for (size_t i = 0; i < n * COLUMNS; i++) masked[i] = i % COLUMNS / 2 == side ? w->value[i] : 0.0;
             enter(w, side == 0 && !last ? p + 1 : p, masked);
         }
-        if (!last) status = reflect(w, false, error);
+        if (!last) reflect(w);
     }
     free(masked);
     return status;
@@ -208,10 +181,11 @@ lq_status lq_pile_values(const lq_pile *pile, const double *reward, const double
     }
     lq_block rest = {0};
     lq_status status = add_rest(pile, &rest, error);
-    double *memory = calloc(n * n + 2 * n * COLUMNS + 1, sizeof *memory);
+    double *memory = calloc(2 * n * (n + COLUMNS) + 1, sizeof *memory);
     if (status == LQ_OK && !memory) status = no_memory(error);
     if (status == LQ_OK) {
-        walk w = {pile, paths, n, memory, memory + n * n, memory + n * n + n * COLUMNS, values};
+        double *const vectors = memory + 2 * n * n;
+        walk w = {pile, paths, n, memory, memory + n * n, vectors, vectors + n * COLUMNS, values};
         start(&w, &rest, pile->crossing[1], reward, reward_beyond);
         status = split(&w, error);
     }

@@ -159,6 +159,14 @@ static void mark_sides(lq_plan *plan, const lq_plan_chain *chain) {
     }
 }
 
+/* Media of one index share an axis: what all of them see is looked for once. */
+static size_t medium_axis(lq_plan *plan, const lq_plan_chain *chain, const lq_media *media, size_t i) {
+    for (size_t before = 0; before < i; before++)
+        if (media->n[before] == media->n[i]) return chain->medium[before].axis;
+    const lq_plan_axis axis = lq_media_axis(media, media->n[i]);
+    return find_axis(plan, &axis);
+}
+
 static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, bool from_below,
                             lq_scattering scattering, lq_error *error) {
     lq_plan_chain *chain = &plan->chain[channel];
@@ -173,8 +181,7 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
         return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", layers);
     }
     for (size_t i = 0; i < media.count; i++) {
-        const lq_plan_axis axis = lq_media_axis(&media, media.n[i]);
-        chain->medium[i].axis = find_axis(plan, &axis);
+        chain->medium[i].axis = medium_axis(plan, chain, &media, i);
         chain->medium[i].tau = i == 0 ? 1.0 : lq_medium_transmittance(&stack->layers[i - 1].medium, channel);
     }
     media_free(&media);
@@ -190,8 +197,7 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
 lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
                        lq_error *error) {
     *plan = (lq_plan){.channels = lq_stack_channels(stack)};
-    lq_status status = lq_stack_solvable(stack, from_below, error);
-    if (status != LQ_OK) return status;
+    lq_status status = LQ_OK;
     const size_t most = (stack->layer_count + 1) * (size_t)plan->channels;
     plan->surface = calloc(most, sizeof *plan->surface);
     plan->axis = calloc(most, sizeof *plan->axis);

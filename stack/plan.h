@@ -45,7 +45,7 @@ typedef struct lq_plan {
     const lq_ndf **ndf; /* opened */
 } lq_plan;
 
-/* LQ_BAD_INPUT: what lq_stack_solve refuses. Free it on LQ_OK. */
+/* Of a stack that lq_stack_solvable accepts. Free it on LQ_OK. */
 lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
                        lq_error *error);
 void lq_plan_free(lq_plan *plan);

@@ -14,13 +14,16 @@ static const char *unsolved(const lq_layer *layer) {
     return NULL;
 }
 
-lq_status lq_stack_solvable(const lq_stack *stack, bool from_below, lq_error *error) {
+lq_status lq_stack_solvable(const lq_stack *stack, const lq_stack_query *query, lq_error *error) {
+    for (size_t i = 0; i < query->mu_count; i++)
+        if (!(query->mu[i] >= 0.0 && query->mu[i] <= 1.0))
+            return lq_fail(error, LQ_BAD_INPUT, "mu = %g; accepted: 0 <= mu <= 1", query->mu[i]);
     for (size_t i = 0; i < stack->layer_count; i++) {
         const char *why = unsolved(&stack->layers[i]);
         if (why) return lq_fail(error, LQ_BAD_INPUT, "layer %zu %s", i + 1, why);
     }
     const lq_layer_type last = stack->layers[stack->layer_count - 1].type;
-    if (from_below && last != LQ_LAYER_DIELECTRIC)
+    if (query->from_below && last != LQ_LAYER_DIELECTRIC)
         return lq_fail(error, LQ_BAD_INPUT,
                        "light from below a %s base; accepted: a stack that ends with a "
                        "dielectric",

@@ -3,16 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stack/description.h"
 #include "stack/level.h"
 #include "system/status.h"
 
 static const double DEFAULT_TOLERANCE = 1e-4;
 
-static lq_status check(const lq_stack_query *query, lq_error *error) {
-    for (size_t i = 0; i < query->mu_count; i++)
-        if (!(query->mu[i] >= 0.0 && query->mu[i] <= 1.0))
-            return lq_fail(error, LQ_BAD_INPUT, "mu = %g; accepted: 0 <= mu <= 1", query->mu[i]);
-    return LQ_OK;
+double lq_stack_tolerance(const lq_stack_query *query) {
+    return query->tolerance > 0.0 ? query->tolerance : DEFAULT_TOLERANCE;
 }
 
 static double difference(const lq_stack_lobe *a, const lq_stack_lobe *b) {
@@ -57,9 +55,9 @@ static lq_status refine(const lq_plan *plan, const lq_stack_query *query, double
 
 lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
                          const lq_progress *progress, lq_error *error) {
-    const double tolerance = query->tolerance > 0.0 ? query->tolerance : DEFAULT_TOLERANCE;
+    const double tolerance = lq_stack_tolerance(query);
     lq_plan plan;
-    lq_status status = check(query, error);
+    lq_status status = lq_stack_solvable(stack, query, error);
     if (status != LQ_OK) return status;
     status = lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
     if (status != LQ_OK) return status;
@@ -87,7 +85,7 @@ lq_status lq_stack_count_paths(const lq_stack *stack, const lq_stack_query *quer
                                size_t *paths, lq_error *error) {
     lq_stack_query every = *query;
     lq_plan plan;
-    lq_status status = check(query, error);
+    lq_status status = lq_stack_solvable(stack, query, error);
     if (status == LQ_OK)
         status =
             lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);

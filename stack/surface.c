@@ -106,7 +106,7 @@ static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
     {12, 20, 10, 16}, {16, 24, 12, 20}, {20, 28, 16, 24}, {28, 32, 20, 30},
     {40, 36, 26, 36}, {56, 40, 36, 46}, {84, 44, 52, 60}};
 
-enum { FEWEST_NODES = 8, FEWEST_SMALL = 12, SPLITS_MAX = 3 };
+enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
 /* Splits closer than this to each other or to an end are left out: their element would have nodes for
  * nothing. */

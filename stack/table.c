@@ -1,13 +1,14 @@
 /* table.c - what a stack does to light as a table, over the cosine and any parameters of its layers. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "stack/along.h"
 #include "stack/description.h"
+#include "stack/level.h"
 #include "system/parallel.h"
 #include "system/status.h"
+#include "tables/facts.h"
 
 static const char *const moments[] = {
     "reflected",         "sin2", "mean", "across", "transmitted", "transmitted_sin2", "transmitted_mean",
@@ -42,7 +43,7 @@ static bool is_opaque(const lq_stack *stack) {
 static const double INTERPOLATION = 0.4;
 
 static double tolerance_of(const filling *f) {
-    return f->query->tolerance > 0.0 ? f->query->tolerance : 1e-4;
+    return lq_stack_tolerance(f->query);
 }
 
 static size_t cosines_of(const filling *f) {
@@ -220,17 +221,8 @@ static lq_status check_axes(const lq_stack *stack, const lq_axis *axes, int coun
     return status;
 }
 
-/* Three digits, never below the value. */
-static lq_status set_error(lq_table *table, double value, lq_error *error) {
-    char text[32];
-    const double unit = value > 0.0 ? pow(10.0, floor(log10(value)) - 2.0) : 1.0;
-    snprintf(text, sizeof text, "%.3g", ceil(value / unit * (1.0 - 1e-12)) * unit);
-    return lq_table_set_fact(table, "error", text, error);
-}
-
-static lq_status set_facts(const filling *f, lq_error *error) {
-    char tolerance[32], *description = NULL;
-    snprintf(tolerance, sizeof tolerance, "%.3g", tolerance_of(f));
+static lq_status set_facts(const filling *f, double worst, lq_error *error) {
+    char *description = NULL;
     lq_status status = lq_stack_text(f->stack, &description, error);
     const char *const facts[][2] = {
         {"table", "stack"},
@@ -240,13 +232,18 @@ static lq_status set_facts(const filling *f, lq_error *error) {
         {"stack", description},
         {"from", f->query->from_below ? "below" : "above"},
         {"scattering", f->query->single ? "single" : "multiple"},
-        {"version", LQ_VERSION},
-        {"tolerance", tolerance},
-        {"rounding", "3e-08"}};
+        {"version", LQ_VERSION}};
     for (size_t i = 0; i < sizeof facts / sizeof *facts && status == LQ_OK; i++)
         status = lq_table_set_fact(f->table, facts[i][0], facts[i][1], error);
+    if (status == LQ_OK) status = lq_table_set_number(f->table, "tolerance", tolerance_of(f), error);
+    if (status == LQ_OK) status = lq_table_set_bound(f->table, "rounding", LQ_STORAGE_ROUNDING, error);
+    if (status == LQ_OK) status = lq_table_set_bound(f->table, "error", worst, error);
     free(description);
     return status;
+}
+
+static bool is_roughness(const lq_axis *axis) {
+    return strstr(axis->name, ".alpha") && !strstr(axis->name, ".rotate");
 }
 
 /* The parameter that turns go along: the first roughness, otherwise any. */
@@ -255,16 +252,15 @@ static void choose_along(filling *f) {
     for (int a = f->table->axis_count; a-- > 0;)
         if (a != f->mu_axis) f->along_axis = a;
     for (int a = f->table->axis_count; a-- > 0;)
-        if (strstr(f->table->axes[a].name, ".alpha") && !strstr(f->table->axes[a].name, ".rotate"))
-            f->along_axis = a;
+        if (is_roughness(&f->table->axes[a])) f->along_axis = a;
 }
 
 static lq_status allocate(filling *f, lq_error *error) {
     static const double none = 0.0;
     choose_along(f);
     const lq_axis *axis = f->along_axis < 0 ? NULL : &f->table->axes[f->along_axis];
-    const bool is_alpha = axis && strstr(axis->name, ".alpha") != NULL;
-    bool ok = lq_along_make(&f->along, axis ? axis->nodes : &none, axis ? axis->size : 1, is_alpha);
+    bool ok = lq_along_make(&f->along, axis ? axis->nodes : &none, axis ? axis->size : 1,
+                            axis && is_roughness(axis));
     for (int p = 0; p < LQ_ALONG_PANELS; p++) f->interpolates |= f->along.panel_used[p];
     f->others = lq_table_entries(f->table) / cosines_of(f) / (axis ? axis->size : 1);
     const size_t most = f->along.size + LQ_ALONG_PANELS * LQ_ALONG_POINTS;
@@ -282,8 +278,7 @@ static lq_status fill(filling *f, const lq_progress *progress, lq_error *error) 
     again = solve_turns(f, progress, error);
     if (again != LQ_OK && again != LQ_NOT_CONVERGED) return again;
     const double worst = store_all(f) + left_out;
-    status = set_facts(f, error);
-    if (status == LQ_OK) status = set_error(f->table, worst, error);
+    status = set_facts(f, worst, error);
     if (status != LQ_OK || worst <= tolerance_of(f)) return status;
     return lq_fail(error, LQ_NOT_CONVERGED, "error estimate %.2g is above the tolerance", worst);
 }

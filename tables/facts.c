@@ -2,6 +2,8 @@
 #define _POSIX_C_SOURCE 200809L /* strdup */
 #include "tables/facts.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,4 +49,15 @@ void lq_facts_free(lq_fact *facts, size_t count) {
         free(facts[i].value);
     }
     free(facts);
+}
+
+lq_status lq_table_set_number(lq_table *table, const char *key, double value, lq_error *error) {
+    char text[32];
+    snprintf(text, sizeof text, "%.3g", value);
+    return lq_table_set_fact(table, key, text, error);
+}
+
+lq_status lq_table_set_bound(lq_table *table, const char *key, double value, lq_error *error) {
+    const double unit = value > 0.0 ? pow(10.0, floor(log10(value)) - 2.0) : 1.0;
+    return lq_table_set_number(table, key, ceil(value / unit * (1.0 - 1e-12)) * unit, error);
 }

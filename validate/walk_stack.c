@@ -171,16 +171,13 @@ static lq_status walk_one(const pile *p, const lq_walk *walk, lq_stack_walked *w
 }
 
 static lq_status check(const lq_stack *stack, const lq_stack_query *query, size_t samples, lq_error *error) {
-    for (size_t i = 0; i < query->mu_count; i++)
-        if (!(query->mu[i] >= 0.0 && query->mu[i] <= 1.0))
-            return lq_fail(error, LQ_BAD_INPUT, "mu = %g; accepted: 0 <= mu <= 1", query->mu[i]);
     if (query->paths > LQ_STACK_WALK_PATHS)
         return lq_fail(error, LQ_BAD_INPUT, "%zu paths of a random walk; accepted: up to %d", query->paths,
                        LQ_STACK_WALK_PATHS);
     if (samples < 2 || samples > LQ_WALK_MAX_SAMPLES)
         return lq_fail(error, LQ_BAD_INPUT, "random walk: %zu samples, accepted are 2 to %zu", samples,
                        (size_t)LQ_WALK_MAX_SAMPLES);
-    return lq_stack_solvable(stack, query->from_below, error);
+    return lq_stack_solvable(stack, query, error);
 }
 
 lq_status lq_stack_walk(const lq_stack *stack, const lq_stack_query *query, size_t samples, size_t seed,
