@@ -125,7 +125,7 @@ static void add_split(lq_level_splits *splits, double at) {
 /* Where the node axis is divided: where other interfaces make steps, and in the denser medium, where what
  * falls on the facets turns at the critical angle, cos = sqrt(1 - eta^2), within a width alpha, and what
  * rises meets no facet below that angle from cos = eta on, where the cone touches the horizon. Divided there,
- * 20 nodes do what 32 to 48 do undivided. */
+ * 20 nodes do what 32 do undivided. */
 static lq_level_splits splits_of(const lq_surface *s) {
     const double eta = fmin(s->eta, 1.0 / s->eta);
     lq_level_splits splits = {0};

@@ -3,36 +3,11 @@
 # planted in them is named.
 set -euo pipefail
 : "${LACQUER:?path of the program}"
+. "$(dirname "$0")/expect.sh"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-failures=0
-
-fail() {
-    echo "FAIL: $*" >&2
-    failures=$((failures + 1))
-}
-
-# run CODE ARGUMENTS...: out, err hold what it printed.
-run() {
-    local code=$1 got=0
-    shift
-    "$LACQUER" "$@" >out 2>err || got=$?
-    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat out err)"
-}
-
-refused() {
-    local pattern=$1
-    shift
-    run 1 "$@"
-    [ "$(wc -l <err)" -eq 1 ] && grep -qE -e "$pattern" err || fail "lacquer $*: '$(cat err)' is not '$pattern'"
-    [ ! -s out ] || fail "lacquer $*: printed on stdout"
-}
-
-says() {
-    grep -qE -e "$1" out || fail "no '$1' in: $(cat out)"
-}
 
 # ---------------------------------------------------------------------------------- .npy
 cat >albedo.json <<'J'

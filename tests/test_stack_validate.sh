@@ -2,39 +2,12 @@
 # `lacquer validate stack`: solver and walks agree on the stacks that come along, and mistakes are one line.
 set -euo pipefail
 : "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?root of the sources}"
+. "$(dirname "$0")/expect.sh"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 stacks=$LACQUER_SOURCE/recipes/stacks
-failures=0
-
-fail() {
-    echo "FAIL: $*" >&2
-    failures=$((failures + 1))
-}
-
-# run CODE ARGUMENTS...: out, err hold what it printed.
-run() {
-    local code=$1 got=0
-    shift
-    "$LACQUER" "$@" >out 2>err || got=$?
-    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat out err)"
-}
-
-# refused PATTERN ARGUMENTS...: exit 1, one line on stderr that matches, nothing on stdout.
-refused() {
-    local pattern=$1
-    shift
-    run 1 "$@"
-    [ "$(wc -l <err)" -eq 1 ] || fail "lacquer $*: not one line: $(cat err)"
-    grep -qE -e "$pattern" err || fail "lacquer $*: '$(cat err)' does not match '$pattern'"
-    [ ! -s out ] || fail "lacquer $*: printed on stdout"
-}
-
-says() {
-    grep -qE -e "$1" out || fail "no '$1' in: $(cat out)"
-}
 
 # ------------------------------------------------------------------------------------- in order
 run 0 validate stack "$stacks/frosted-metal.json" --samples 50000

@@ -2,38 +2,11 @@
 # `lacquer validate` and `lacquer bench`: a good table passes, a damaged one does not, mistakes are one line.
 set -euo pipefail
 : "${LACQUER:?path of the program}"
+. "$(dirname "$0")/expect.sh"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-failures=0
-
-fail() {
-    echo "FAIL: $*" >&2
-    failures=$((failures + 1))
-}
-
-# run CODE ARGUMENTS...: out, err hold what it printed.
-run() {
-    local code=$1 got=0
-    shift
-    "$LACQUER" "$@" >out 2>err || got=$?
-    [ "$got" -eq "$code" ] || fail "lacquer $*: exit $got, expected $code: $(cat out err)"
-}
-
-# refused PATTERN ARGUMENTS...: exit 1, one line on stderr that matches, nothing on stdout.
-refused() {
-    local pattern=$1
-    shift
-    run 1 "$@"
-    [ "$(wc -l <err)" -eq 1 ] || fail "lacquer $*: not one line: $(cat err)"
-    grep -qE -e "$pattern" err || fail "lacquer $*: '$(cat err)' does not match '$pattern'"
-    [ ! -s out ] || fail "lacquer $*: printed on stdout"
-}
-
-says() {
-    grep -qE -e "$1" out || fail "no '$1' in: $(cat out)"
-}
 
 # ------------------------------------------------------------------------- tables that are in order
 axes=(--axis mu=0:1:9 --axis alpha=0:1:6 --axis n=0.2:2:3 --axis kappa=1:4:3)
