@@ -2,6 +2,7 @@
 #include "pack/image.h"
 
 #include "pack/bytes.h"
+#include "pack/language.h"
 #include "system/output.h"
 #include "system/status.h"
 #include "tables/half.h"
@@ -93,8 +94,9 @@ static void encode_c(lq_bytes *bytes, const lq_image *image, const char *name) {
     lq_bytes_add(bytes, text, (size_t)used);
     for (size_t i = 0; i < count; i++) {
         const bool ends = i % PER_LINE == PER_LINE - 1 || i == count - 1;
-        used = snprintf(text, sizeof text, "%s%.9g,%s", i % PER_LINE == 0 ? "    " : " ",
-                        (double)image->data[i], ends ? "\n" : "");
+        char number[LQ_LITERAL_SIZE];
+        used = snprintf(text, sizeof text, "%s%s,%s", i % PER_LINE == 0 ? "    " : " ",
+                        lq_literal((double)image->data[i], LQ_C, number), ends ? "\n" : "");
         lq_bytes_add(bytes, text, (size_t)used);
     }
     lq_bytes_add(bytes, "};\n", 3);

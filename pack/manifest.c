@@ -52,7 +52,7 @@ static json_t *describe_axis(const lq_axis *axis, int a) {
                      "u = ((value - min) / (max - min))^(1 / exponent), then u (1 - 1/texels) + 0.5/texels");
 }
 
-static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image, json_t *sums) {
+static json_t *describe_stem(const lq_recipe *recipe, const char *stem, json_t *sums) {
     static const char *const hints[LQ_CONTAINERS] = {
         "KTX 2.0",
         "KTX 2.0, zstd",
@@ -61,8 +61,7 @@ static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, 
         "NumPy, first axis fastest (last index before the channels)",
         "C array"};
     json_t *files = json_array();
-    char stem[64], name[96];
-    lq_packed_stem(packed, image, stem, sizeof stem);
+    char name[96];
     for (int c = 0; c < LQ_CONTAINERS; c++) {
         if (!recipe->containers[c]) continue;
         snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
@@ -71,6 +70,12 @@ static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, 
         json_array_append_new(files, item);
     }
     return files;
+}
+
+static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, size_t image, json_t *sums) {
+    char stem[64];
+    lq_packed_stem(packed, image, stem, sizeof stem);
+    return describe_stem(recipe, stem, sums);
 }
 
 static void add_binaries(const lq_packed *packed, json_t *files) {
@@ -94,12 +99,12 @@ static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed
         snprintf(argument, sizeof argument, "t%s", bases->suffix);
         for (int a = 0; a < factor->axis_count; a++)
             json_array_append_new(axes, describe_axis(&factor->axes[a].texels, a));
-        json_array_append_new(textures,
-                              json_pack("{s:s, s:I, s:I, s:I, s:s, s:o, s:o}", "argument", argument, "piece",
-                                        (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count,
-                                        "layers", (json_int_t)bases->image.layers, "layout",
-                                        "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
-                                        describe_files(recipe, packed, i, sums)));
+        json_array_append_new(
+            textures, json_pack("{s:s, s:I, s:I, s:I, s:s, s:o, s:o}", "argument", argument, "piece",
+                                (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count, "layers",
+                                (json_int_t)bases->image.layers, "layout",
+                                "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
+                                recipe->atlas ? json_array() : describe_files(recipe, packed, i, sums)));
     }
     return textures;
 }
@@ -157,10 +162,31 @@ static json_t *describe_fixed(const lq_recipe_table *from) {
     return fixed;
 }
 
-static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, json_t *sums) {
+/* Where the image is in the atlas: its layers, texels of the first one. */
+static json_t *describe_tiles(const lq_packing *packing, size_t first, size_t count) {
+    json_t *tiles = json_array();
+    for (size_t i = first; i < first + count; i++) {
+        const lq_tile *tile = &packing->atlas.tiles[i];
+        json_array_append_new(tiles,
+                              json_pack("[I, I, I, I]", (json_int_t)tile->x, (json_int_t)tile->y,
+                                        (json_int_t)tile->image->width, (json_int_t)tile->image->height));
+    }
+    return tiles;
+}
+
+static size_t layers_of(const lq_packed *packed) {
+    size_t layers = 0;
+    for (size_t i = 0; i < lq_packed_images(packed); i++) layers += lq_packed_image(packed, i)->layers;
+    return layers;
+}
+
+static json_t *describe_table(const lq_packing *packing, size_t index, json_t *sums) {
+    const lq_recipe *recipe = packing->recipe;
+    const lq_packed *packed = &packing->tables[index];
     const lq_texture *texture = &packed->texture;
     const lq_recipe_table *from = packed->from;
-    json_t *files = packed->factored ? json_array() : describe_files(recipe, packed, 0, sums);
+    const bool alone = !packed->factored && !recipe->atlas;
+    json_t *files = alone ? describe_files(recipe, packed, 0, sums) : json_array();
     char function[64];
     snprintf(function, sizeof function, "lacquer_%s",
              packed->factored ? packed->factors.name : texture->name);
@@ -182,6 +208,9 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, 
         json_object_set_new(table, "fixed", describe_fixed(from));
         json_object_set_new(table, "channels", channels);
     }
+    if (recipe->atlas)
+        json_object_set_new(table, "tiles",
+                            describe_tiles(packing, packing->tiles[index], layers_of(packed)));
     add_binaries(packed, files);
     json_object_set_new(table, "files", files);
     json_object_set_new(table, "error", describe_error(packed));
@@ -189,25 +218,89 @@ static json_t *describe_table(const lq_recipe *recipe, const lq_packed *packed, 
     return table;
 }
 
-lq_status lq_manifest_write(const lq_recipe *recipe, const lq_packed *packed, const char *folder,
-                            lq_error *error) {
+/* A material: its stack, which channel holds each number and which are constants, and its error. */
+static json_t *describe_lobes(const lq_lobes *lobes) {
+    static const char *const names[LQ_MATERIAL_NUMBERS] = {
+        "top.r",     "top.g",     "top.b",     "inner.r", "inner.g", "inner.b", "inner_alpha",
+        "through.r", "through.g", "through.b", "back.r",  "back.g",  "back.b",  "base_alpha"};
+    json_t *numbers = json_object();
+    for (int k = 0; k < LQ_MATERIAL_NUMBERS; k++)
+        json_object_set_new(numbers, names[k],
+                            lobes->channel[k] < 0 ? json_pack("{s:f}", "constant", lobes->constant[k])
+                                                  : json_pack("{s:i}", "channel", lobes->channel[k]));
+    return numbers;
+}
+
+static json_t *describe_material_error(const lq_recipe *recipe, const lq_packed_material *m) {
+    json_t *error = json_pack("{s:s, s:I, s:f, s:f, s:f, s:s}", "kind", "absolute", "points",
+                              (json_int_t)m->measure.points, "rms", m->measure.rms, "p99", m->measure.p99,
+                              "max", m->measure.max, "includes",
+                              "half storage, 8 fractional bits of filter weights; off the grid, against the "
+                              "exact stack, for mu >= 0.02; energies, and roughness times the energy it has");
+    json_t *worst = json_object();
+    for (int a = 0; a < 1 + m->from->material.range_count; a++)
+        json_object_set_new(worst, a == 0 ? "mu" : m->from->material.ranges[a - 1].name,
+                            number(m->measure.worst[a]));
+    json_object_set_new(error, "worst-at", worst);
+    if (isfinite(recipe->p99)) json_object_set_new(error, "budget-p99", number(recipe->p99));
+    if (isfinite(recipe->max)) json_object_set_new(error, "budget-max", number(recipe->max));
+    return error;
+}
+
+static json_t *describe_material(const lq_packing *packing, size_t index) {
+    const lq_packed_material *m = &packing->materials[index];
+    const lq_lobes *lobes = &m->lobes;
+    const lq_atlas_material source = {m->name, lobes, packing->tiles[packing->recipe->count + index]};
+    const bool textured = lobes->channel_count > 0;
+    json_t *axes = json_array();
+    char function[64], *stack = NULL;
+    snprintf(function, sizeof function, "lacquer_%s", m->name);
+    for (int a = 0; a < lobes->axis_count && textured; a++)
+        json_array_append_new(axes, describe_axis(&lobes->axes[a], a));
+    if (lq_stack_text(m->from->stack, &stack, NULL) != LQ_OK) stack = NULL;
+    json_t *material = json_pack(
+        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "name", m->from->name, "function",
+        function, "stack", stack ? stack : "", "source", m->from->source ? m->from->source : "", "bytes",
+        (json_int_t)lq_image_bytes(&lobes->image), "fetches", (json_int_t)lq_atlas_material_fetches(&source),
+        "pitch", (json_int_t)lq_lobes_pitch(lobes), "axes", axes, "numbers", describe_lobes(lobes), "tiles",
+        describe_tiles(packing, source.tile, textured ? lobes->texels : 0), "error",
+        describe_material_error(packing->recipe, m));
+    free(stack);
+    return material;
+}
+
+static void add_atlas(const lq_packing *packing, json_t *root, json_t *sums) {
+    const lq_image *image = &packing->atlas.image;
+    json_object_set_new(root, "atlas",
+                        json_pack("{s:I, s:I, s:s, s:o}", "width", (json_int_t)image->width, "height",
+                                  (json_int_t)image->height, "layout",
+                                  "tiles are [x, y, width, height] without their border of one texel, which "
+                                  "repeats the edge; a texel of a material holds channels 4 t to 4 t + 3",
+                                  "files", describe_stem(packing->recipe, "atlas", sums)));
+    json_t *materials = json_array();
+    for (size_t i = 0; i < packing->recipe->material_count; i++)
+        json_array_append_new(materials, describe_material(packing, i));
+    json_object_set_new(root, "materials", materials);
+}
+
+lq_status lq_manifest_write(const lq_packing *packing, const char *folder, lq_error *error) {
+    const lq_recipe *recipe = packing->recipe;
     char path[PATH_MAX + 64];
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
     json_t *tables = json_array(), *sources = json_array();
     json_t *sums = lq_contents_list(folder); /* NULL: json_pack below says so */
-    size_t bytes = 0;
-    for (size_t i = 0; i < recipe->count; i++) {
-        json_array_append_new(tables, describe_table(recipe, &packed[i], sums));
-        bytes += lq_packed_bytes(&packed[i]);
-    }
-    for (int l = 0; l < LQ_LANGUAGES; l++)
-        json_array_append_new(sources, json_string(lq_source_file((lq_language)l)));
+    for (size_t i = 0; i < recipe->count; i++)
+        json_array_append_new(tables, describe_table(packing, i, sums));
+    for (int l = 0; l < lq_packing_languages(recipe); l++)
+        json_array_append_new(sources, json_string(lq_language_file((lq_language)l)));
     json_t *root =
-        json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o}", "format", LQ_PACK_FORMAT, "version",
+        json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:O}", "format", LQ_PACK_FORMAT, "version",
                   LQ_PACK_VERSION, "pack", recipe->name, "made-by", "lacquer " LQ_VERSION, "orientation",
                   "texel 0 of every axis is its min and is stored first", "sampler",
-                  "linear filter, clamp to edge, no mip levels", "texture-bytes", (json_int_t)bytes, "decode",
-                  sources, "tables", tables, "files", sums);
+                  "linear filter, clamp to edge, no mip levels", "texture-bytes",
+                  (json_int_t)lq_packing_bytes(packing), "decode", sources, "tables", tables, "files", sums);
+    if (root && recipe->atlas) add_atlas(packing, root, sums);
+    json_decref(sums);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     if (!text) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);

@@ -11,7 +11,8 @@
 #include <string.h>
 #include <strings.h>
 
-enum { NAME = 96, OURS = LQ_RECIPE_TABLES }; /* OURS: the "table" of what every pack has */
+/* An entry: a table, or after them a material. OURS: that of what every pack has. */
+enum { NAME = 96, OURS = LQ_RECIPE_TABLES + LQ_RECIPE_MATERIALS };
 
 typedef struct used {
     char text[2 * NAME];
@@ -29,6 +30,14 @@ void lq_make_identifier(char *identifier, const char *name) {
     snprintf(identifier, LQ_NAME_SIZE, "%s", name);
     for (; *identifier; identifier++)
         if (!isalnum((unsigned char)*identifier)) *identifier = '_';
+}
+
+static size_t entries_of(const lq_recipe *recipe) {
+    return recipe->count + recipe->material_count;
+}
+
+static const char *name_of(const lq_recipe *recipe, size_t entry) {
+    return entry < recipe->count ? recipe->tables[entry].name : recipe->materials[entry - recipe->count].name;
 }
 
 static bool grow(names *n) {
@@ -60,10 +69,12 @@ static void add_all(names *n, size_t table, const char *stem, const char *joint,
 }
 
 static void add_files(names *n, size_t table) {
+    if (table >= n->recipe->count) return;
     const lq_recipe_table *t = &n->recipe->tables[table];
     char ending[NAME];
     for (int c = 0; c < LQ_CONTAINERS; c++)
-        if (n->recipe->containers[c]) add_all(n, table, t->name, ".", lq_container_ending((lq_container)c));
+        if (n->recipe->containers[c] && !n->recipe->atlas)
+            add_all(n, table, t->name, ".", lq_container_ending((lq_container)c));
     for (int l = 0; l < LQ_LAYOUTS; l++) {
         if (!t->layouts[l]) continue;
         snprintf(ending, sizeof ending, ".%s.bin", lq_layout_name((lq_layout)l));
@@ -74,9 +85,9 @@ static void add_files(names *n, size_t table) {
 /* As the sources name them behind "lacquer_". */
 static void add_identifiers(names *n, size_t table) {
     char identifier[LQ_NAME_SIZE];
-    lq_make_identifier(identifier, n->recipe->tables[table].name);
+    lq_make_identifier(identifier, name_of(n->recipe, table));
     add(n, table, identifier, "");
-    add_all(n, table, identifier, "_", "_texels");
+    if (table < n->recipe->count) add_all(n, table, identifier, "_", "_texels");
 }
 
 static int by_text(const void *a, const void *b) {
@@ -95,10 +106,10 @@ static lq_status find_twice(names *n, const char *what, size_t *culprit, lq_erro
         const size_t first = one->table < two->table ? one->table : two->table;
         const size_t later = one->table < two->table ? two->table : one->table;
         *culprit = later == OURS ? first : later;
-        const char *other = later == OURS ? "every pack" : n->recipe->tables[first].name;
+        const char *other = later == OURS ? "every pack" : name_of(n->recipe, first);
         return lq_fail(error, LQ_BAD_INPUT,
                        "the name '%s' makes %s '%s', which %s has too; accepted: another \"name\"",
-                       n->recipe->tables[*culprit].name, what, two->text, other);
+                       name_of(n->recipe, *culprit), what, two->text, other);
     }
     return LQ_OK;
 }
@@ -106,16 +117,16 @@ static lq_status find_twice(names *n, const char *what, size_t *culprit, lq_erro
 /* Identifiers with two underscores in a row are kept by GLSL for itself; files that begin with a dot are
  * hidden, and with a dash taken for options. */
 static lq_status check_plain(const lq_recipe *recipe, size_t *culprit, lq_error *error) {
-    for (size_t i = 0; i < recipe->count; i++) {
+    for (size_t i = 0; i < entries_of(recipe); i++) {
         char identifier[LQ_NAME_SIZE];
-        lq_make_identifier(identifier, recipe->tables[i].name);
+        lq_make_identifier(identifier, name_of(recipe, i));
         *culprit = i;
         if (identifier[0] == '_' || strstr(identifier, "__") || identifier[strlen(identifier) - 1] == '_')
             return lq_fail(
                 error, LQ_BAD_INPUT,
                 "the name '%s' makes no identifier; accepted: letters and digits, with single '_', '-' or "
                 "'.' between them",
-                recipe->tables[i].name);
+                name_of(recipe, i));
     }
     return LQ_OK;
 }
@@ -124,14 +135,14 @@ static lq_status check(names *n, void (*collect)(names *, size_t), const char *c
                        size_t *culprit, lq_error *error) {
     n->count = 0;
     for (size_t i = 0; ours[i]; i++) add(n, OURS, ours[i], "");
-    for (size_t i = 0; i < n->recipe->count; i++) collect(n, i);
+    for (size_t i = 0; i < entries_of(n->recipe); i++) collect(n, i);
     return find_twice(n, what, culprit, error);
 }
 
 lq_status lq_names_check(const lq_recipe *recipe, size_t *culprit, lq_error *error) {
-    const char *files[LQ_LANGUAGES + 2] = {LQ_MANIFEST};
+    const char *files[LQ_LANGUAGES + 2 + LQ_CONTAINERS] = {LQ_MANIFEST};
     names n = {.recipe = recipe};
-    for (int l = 0; l < LQ_LANGUAGES; l++) files[l + 1] = lq_source_file((lq_language)l);
+    for (int l = 0; l < LQ_LANGUAGES; l++) files[l + 1] = lq_language_file((lq_language)l);
     lq_status status = check_plain(recipe, culprit, error);
     if (status == LQ_OK) status = check(&n, add_files, files, "the file", culprit, error);
     if (status == LQ_OK) status = check(&n, add_identifiers, lq_source_helpers(), "lacquer_", culprit, error);

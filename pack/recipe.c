@@ -4,6 +4,7 @@
 #include "pack/mapping.h"
 #include "pack/names.h"
 #include "pack/recipe_text.h"
+#include "pack/scene.h"
 #include "pack/texture.h"
 #include "system/status.h"
 #include "tables/axis.h"
@@ -15,7 +16,8 @@
 
 enum { POINTS = 2000, LEAST_POINTS = 100, MOST_POINTS = 1000000 };
 
-static const char root_keys[] = "name, about, ndf, formats, budget, points, max-bytes, tables";
+static const char root_keys[] =
+    "name, about, ndf, formats, atlas, budget, points, max-bytes, tables, materials";
 static const char table_keys[] =
     "table, mapping, name, axes, ndf, tolerance, scattering, masking, budget, points, layouts, pca";
 static const char budget_keys[] = "p99, max";
@@ -206,8 +208,34 @@ static lq_status check_names(lq_recipe_reader *r) {
     lq_error why = {""};
     size_t culprit = 0;
     if (lq_names_check(r->recipe, &culprit, &why) == LQ_OK) return LQ_OK;
+    if (culprit >= r->recipe->count)
+        return lq_fail(r->error, LQ_BAD_INPUT, "%s:%d: %s", r->path,
+                       r->recipe->materials[culprit - r->recipe->count].line, why.text);
     r->entry = (int)culprit;
     return lq_refuse(r, r->recipe->tables[culprit].name, why.text);
+}
+
+/* Lobes are normalised by the albedo of a single bounce: a scene without tables gets that one. */
+static lq_status add_albedo(lq_recipe_reader *r, const double *budget, size_t points) {
+    json_t *item = json_pack("{s:s, s:f, s:{s:s, s:s}}", "table", "albedo", "tolerance", 1e-4, "axes", "mu",
+                             "0:1:24:sqrt", "alpha", "0:1:24:sqrt");
+    if (!item) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
+    const lq_status status = read_table(r, item, budget, points);
+    json_decref(item);
+    return status == LQ_OK ? check_names(r) : status;
+}
+
+/* A scene has its textures in one unless it says otherwise; its materials are nowhere else. */
+static lq_status read_materials(lq_recipe_reader *r, json_t *root, const double *budget, size_t points) {
+    json_t *materials = json_object_get(root, "materials"), *atlas = json_object_get(root, "atlas");
+    if (atlas && !json_is_boolean(atlas)) return lq_refuse_value(r, "atlas", "true or false");
+    r->recipe->atlas = atlas ? json_is_true(atlas) : materials != NULL;
+    if (materials && !r->recipe->atlas)
+        return lq_refuse_value(r, "atlas", "true, where there are materials: their texels are in the atlas");
+    r->recipe->p99 = budget[0];
+    r->recipe->max = budget[1];
+    r->recipe->points = points;
+    return lq_scene_read(r, materials);
 }
 
 static lq_status read_root(lq_recipe_reader *r, json_t *root) {
@@ -228,6 +256,9 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     if (status == LQ_OK) status = lq_recipe_number(r, root, "max-bytes", 1.0, 1e12, &bytes);
     if (status != LQ_OK) return status;
     r->recipe->max_bytes = (size_t)bytes;
+    status = read_materials(r, root, budget, points);
+    if (status != LQ_OK) return status;
+    if (!tables && r->recipe->material_count > 0) return add_albedo(r, budget, points);
     if (!json_is_array(tables) || json_array_size(tables) == 0 || json_array_size(tables) > LQ_RECIPE_TABLES)
         return lq_refuse_value(r, "tables", "a list of 1 to 32 tables");
     for (size_t i = 0; i < json_array_size(tables) && status == LQ_OK; i++) {
@@ -272,6 +303,7 @@ lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *tr
 void lq_recipe_free(lq_recipe *recipe) {
     for (size_t i = 0; i < recipe->count; i++)
         for (int a = 0; a < recipe->tables[i].kind->axis_count; a++) lq_axis_free(&recipe->tables[i].axes[a]);
+    for (size_t i = 0; i < recipe->material_count; i++) lq_scene_free(&recipe->materials[i]);
     free(recipe->ndf);
     *recipe = (lq_recipe){0};
 }

@@ -3,8 +3,9 @@
 #define LACQUER_PACK_RECIPE_H
 
 #include "pack/image.h"
+#include "stack/material.h"
 
-enum { LQ_RECIPE_TABLES = 32, LQ_PCA_TEXT = 512 };
+enum { LQ_RECIPE_TABLES = 32, LQ_RECIPE_MATERIALS = 64, LQ_PCA_TEXT = 512 };
 
 typedef struct lq_recipe_table {
     const lq_kind *kind;
@@ -24,13 +25,27 @@ typedef struct lq_recipe_table {
     char pca_text[LQ_PCA_TEXT]; /* the object, as the manifest and the cache name it */
 } lq_recipe_table;
 
+/* A material of a scene: a stack, some of whose numbers are ranges. */
+typedef struct lq_recipe_material {
+    char name[LQ_NAME_SIZE];
+    lq_stack *stack;
+    lq_material material; /* of that stack */
+    char *source;         /* where its constants are from; may be NULL */
+    int line;
+} lq_recipe_material;
+
 typedef struct lq_recipe {
     char name[LQ_NAME_SIZE];
     char *ndf;
+    bool atlas; /* all textures in one */
     bool containers[LQ_CONTAINERS];
     size_t max_bytes; /* of all textures; 0: no bound */
     size_t count;
     lq_recipe_table tables[LQ_RECIPE_TABLES];
+    double p99, max; /* of the materials; INFINITY: none */
+    size_t points;   /* where each of them is checked, at least */
+    size_t material_count;
+    lq_recipe_material materials[LQ_RECIPE_MATERIALS];
 } lq_recipe;
 
 /* Messages are "FILE:LINE: what; accepted: ...". */

@@ -12,14 +12,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *const files[LQ_LANGUAGES] = {"decode.glsl", "decode.hlsl", "decode.h"};
-
-const char *lq_source_file(lq_language language) {
-    return files[language];
-}
-
 const char *const *lq_source_helpers(void) {
-    static const char *const helpers[] = {"texel", "clamp", "clamp01", "filter", "critical", "cosine", NULL};
+    static const char *const helpers[] = {"texel", "clamp",   "clamp01",      "filter", "critical", "cosine",
+                                          "fetch", "slices",  "mix",          "base",   "lobe",     "lobes",
+                                          "shade", "outside", "atlas_texels", "make2",  "make3",    "make4",
+                                          "vec2",  "vec3",    "vec4",         NULL};
     return helpers;
 }
 
@@ -77,7 +74,7 @@ static const char clamp_text[] = "\nstatic inline float lacquer_clamp(float x, f
                                  "    return x < low ? low : x > high ? high : x;\n}\n";
 
 void lq_print_helpers(FILE *out, lq_language language) {
-    static const char *const heads[LQ_LANGUAGES] = {glsl_head, hlsl_head, c_head};
+    static const char *const heads[LQ_SOURCE_LANGUAGES] = {glsl_head, hlsl_head, c_head};
     const bool c = language == LQ_C;
     const char *f = c ? "f" : "", *root = c ? "sqrtf" : "sqrt", *most = c ? "fmaxf" : "max";
     const char *storage = c ? "static inline " : "";
@@ -86,16 +83,9 @@ void lq_print_helpers(FILE *out, lq_language language) {
     fprintf(out, critical_text, storage, root, most, f, f, f, storage, root, f, f, root, f, f);
 }
 
-/* Shortest text that reads back as the same float, with a decimal point: shaders need one. */
 void lq_print_number(FILE *out, double value, lq_language language) {
-    char text[48];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtof(text, NULL) == (float)value) break;
-    }
-    bool whole = true;
-    for (const char *c = text; *c; c++) whole = whole && *c != '.' && *c != 'e';
-    fprintf(out, "%s%s%s", text, whole ? ".0" : "", language == LQ_C ? "f" : "");
+    char text[LQ_LITERAL_SIZE];
+    fputs(lq_literal(value, language, text), out);
 }
 
 /* ((x - min) / range) clamped, through the inverse of the axis' map. */

@@ -2,12 +2,11 @@
 #ifndef LACQUER_PACK_SOURCE_H
 #define LACQUER_PACK_SOURCE_H
 
+#include "pack/language.h"
 #include "pack/texture.h"
 
-typedef enum lq_language { LQ_GLSL, LQ_HLSL, LQ_C, LQ_LANGUAGES } lq_language;
-
-/* "decode.glsl", "decode.hlsl", "decode.h" */
-const char *lq_source_file(lq_language language);
+/* The languages of a pack of single textures. */
+enum { LQ_SOURCE_LANGUAGES = LQ_C + 1 };
 
 /* The functions that the decode source of any language has besides those of the tables, without "lacquer_";
  * ends with NULL. */

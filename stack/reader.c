@@ -9,11 +9,13 @@
 #include "microfacet/ndf.h"
 #include "stack/description.h"
 #include "stack/locate.h"
+#include "stack/reader.h"
 #include "system/input.h"
 #include "system/status.h"
 
 typedef struct reader {
     const char *name, *text;
+    const lq_stack_place *place; /* in the text; NULL: it is the whole */
     unsigned flags;
     size_t layer;       /* the one being read, counted from 1; 0: none yet */
     const char *object; /* "dielectric", "medium", ...; NULL: the layer itself */
@@ -25,9 +27,13 @@ static lq_status refuse(const reader *r, const char *key, const char *format, ..
     __attribute__((format(printf, 3, 4)));
 
 static lq_status refuse(const reader *r, const char *key, const char *format, ...) {
-    lq_json_step steps[4];
+    lq_json_step steps[6];
     char text[LQ_MESSAGE_SIZE], where[32] = "";
     size_t count = 0;
+    if (r->place) {
+        steps[count++] = (lq_json_step){.key = r->place->list};
+        steps[count++] = (lq_json_step){.index = r->place->index};
+    }
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
@@ -268,9 +274,25 @@ static lq_status read_layers(reader *r, json_t *list, lq_stack *stack) {
 
 static lq_status read_stack(reader *r, json_t *root, lq_stack *stack) {
     if (!json_is_object(root)) return refuse(r, NULL, "no object; accepted: {\"layers\": [...]}");
-    lq_status status = check_keys(r, root, "name, layers");
+    lq_status status = check_keys(r, root, r->place ? r->place->keys : "name, layers");
     if (status == LQ_OK) status = read_name(r, json_object_get(root, "name"), stack);
     return status == LQ_OK ? read_layers(r, json_object_get(root, "layers"), stack) : status;
+}
+
+static lq_status make_stack(reader *r, json_t *json, lq_stack **stack) {
+    *stack = calloc(1, sizeof **stack);
+    if (!*stack) return lq_fail(r->error, LQ_NO_MEMORY, "no memory for a stack");
+    const lq_status status = read_stack(r, json, *stack);
+    if (status == LQ_OK) return LQ_OK;
+    lq_stack_free(*stack);
+    *stack = NULL;
+    return status;
+}
+
+lq_status lq_stack_from_json(lq_stack **stack, json_t *json, const lq_stack_place *place, unsigned flags,
+                             lq_error *error) {
+    reader r = {.name = place->name, .text = place->text, .place = place, .flags = flags, .error = error};
+    return make_stack(&r, json, stack);
 }
 
 lq_status lq_stack_parse(lq_stack **stack, const char *text, const char *name, unsigned flags,
@@ -284,14 +306,8 @@ lq_status lq_stack_parse(lq_stack **stack, const char *text, const char *name, u
             return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack");
         return lq_fail(error, LQ_FORMAT, "%s: line %d: %s; accepted: JSON", name, cause.line, cause.text);
     }
-    *stack = calloc(1, sizeof **stack);
-    const lq_status status =
-        *stack ? read_stack(&r, root, *stack) : lq_fail(error, LQ_NO_MEMORY, "no memory for a stack");
+    const lq_status status = make_stack(&r, root, stack);
     json_decref(root);
-    if (status != LQ_OK) {
-        lq_stack_free(*stack);
-        *stack = NULL;
-    }
     return status;
 }
 

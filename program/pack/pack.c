@@ -63,7 +63,7 @@ static lq_status write_image(const lq_recipe *recipe, const lq_image *image, con
 static lq_status write_one(const lq_recipe *recipe, const lq_packed *p, const char *folder, lq_error *error) {
     char path[PATH_MAX + 64], stem[64], array[96];
     lq_status status = LQ_OK;
-    for (size_t i = 0; i < lq_packed_images(p) && status == LQ_OK; i++) {
+    for (size_t i = 0; i < lq_packed_images(p) && status == LQ_OK && !recipe->atlas; i++) {
         lq_packed_stem(p, i, stem, sizeof stem);
         lq_packed_array(p, i, array, sizeof array);
         status = write_image(recipe, lq_packed_image(p, i), stem, array, folder, error);
@@ -76,33 +76,34 @@ static lq_status write_one(const lq_recipe *recipe, const lq_packed *p, const ch
     return status;
 }
 
-static lq_status write_sources(const lq_recipe *recipe, const lq_packed *packed, const char *folder,
-                               lq_error *error) {
-    lq_source_table tables[LQ_RECIPE_TABLES];
+static lq_status write_sources(const lq_packing *packing, const char *folder, lq_error *error) {
     char path[PATH_MAX + 64];
     lq_status status = LQ_OK;
-    for (size_t i = 0; i < recipe->count; i++) {
-        const lq_packed *p = &packed[i];
-        tables[i] = (lq_source_table){p->from->kind, p->factored ? NULL : &p->texture, &p->factors};
-    }
-    for (int l = 0; l < LQ_LANGUAGES && status == LQ_OK; l++) {
-        snprintf(path, sizeof path, "%s/%s", folder, lq_source_file((lq_language)l));
-        status = lq_source_write((lq_language)l, tables, recipe->count, path, error);
+    for (int l = 0; l < lq_packing_languages(packing->recipe) && status == LQ_OK; l++) {
+        snprintf(path, sizeof path, "%s/%s", folder, lq_language_file((lq_language)l));
+        status = lq_packing_source(packing, (lq_language)l, path, error);
     }
     return status;
 }
 
-static lq_status write_all(const lq_recipe *recipe, const lq_packed *packed, const char *target,
-                           lq_error *error) {
+static lq_status write_files(const lq_packing *packing, const char *folder, lq_error *error) {
+    const lq_recipe *recipe = packing->recipe;
+    lq_status status = LQ_OK;
+    for (size_t i = 0; i < recipe->count && status == LQ_OK; i++) {
+        status = write_one(recipe, &packing->tables[i], folder, error);
+        if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
+    }
+    if (status == LQ_OK && recipe->atlas)
+        status = write_image(recipe, &packing->atlas.image, "atlas", "lacquer_atlas_texels", folder, error);
+    if (status == LQ_OK) status = write_sources(packing, folder, error);
+    return status == LQ_OK ? lq_manifest_write(packing, folder, error) : status;
+}
+
+static lq_status write_all(const lq_packing *packing, const char *target, lq_error *error) {
     lq_folder folder;
     lq_status status = lq_folder_open(&folder, target, error);
     if (status != LQ_OK) return status;
-    for (size_t i = 0; i < recipe->count && status == LQ_OK; i++) {
-        status = write_one(recipe, &packed[i], folder.staging, error);
-        if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
-    }
-    if (status == LQ_OK) status = write_sources(recipe, packed, folder.staging, error);
-    if (status == LQ_OK) status = lq_manifest_write(recipe, packed, folder.staging, error);
+    status = write_files(packing, folder.staging, error);
     if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
     if (status == LQ_OK) status = lq_folder_commit(&folder, error);
     if (status != LQ_OK) lq_folder_abandon(&folder);
@@ -110,59 +111,83 @@ static lq_status write_all(const lq_recipe *recipe, const lq_packed *packed, con
 }
 
 /* A signal does not end the program while there is a folder to clear. */
-static lq_status write_held(const lq_recipe *recipe, const lq_packed *packed, const char *target,
-                            lq_error *error) {
+static lq_status write_held(const lq_packing *packing, const char *target, lq_error *error) {
     cli_signals_hold();
-    const lq_status status = write_all(recipe, packed, target, error);
+    const lq_status status = write_all(packing, target, error);
     cli_signals_release();
     return status;
 }
 
 /* ------------------------------------------------------------------------------------------- verb */
 
-/* One line a table; exit code 2 and its reason where a budget is missed. */
-static int judge(const pack_request *r, const lq_recipe *recipe, const lq_packed *packed) {
-    size_t bytes = 0;
-    int code = CLI_DONE;
-    printf("%-22s %9s %9s %9s %9s\n", "table", "bytes", "rms", "p99", "max");
-    for (size_t i = 0; i < recipe->count; i++) {
-        const lq_measure *m = &packed[i].measure;
-        const lq_recipe_table *t = packed[i].from;
-        bytes += lq_packed_bytes(&packed[i]);
-        printf("%-22s %9zu %9.2e %9.2e %9.2e\n", t->name, lq_packed_bytes(&packed[i]), m->rms, m->p99,
-               m->max);
-        if (code != CLI_DONE || (m->p99 <= t->p99 && m->max <= t->max)) continue;
-        char asked[64] = "";
-        if (isfinite(t->p99)) snprintf(asked, sizeof asked, " p99 %.3g", t->p99);
-        if (isfinite(t->max)) snprintf(asked + strlen(asked), 32, "%s max %.3g", *asked ? "," : "", t->max);
-        cli_message("%s:%d: %s misses its budget: best reached p99 %.3g, max %.3g; asked%s", r->recipe_path,
-                    t->line, t->name, m->p99, m->max, asked);
-        code = CLI_EXCEEDED;
-    }
-    printf("%-22s %9zu\n", "all textures", bytes);
-    if (code == CLI_DONE && recipe->max_bytes && bytes > recipe->max_bytes) {
-        cli_message("%s: the textures take %zu bytes; asked are at most %zu", r->recipe_path, bytes,
-                    recipe->max_bytes);
-        code = CLI_EXCEEDED;
-    }
-    return code;
+/* One line of the report, and whether it is within its budget; the first that is not is said. */
+static bool judge_one(const pack_request *r, int line, const char *name, size_t bytes, const double error[3],
+                      const double budget[2], bool silent) {
+    char asked[64] = "";
+    printf("%-22s %9zu %9.2e %9.2e %9.2e\n", name, bytes, error[0], error[1], error[2]);
+    if (error[1] <= budget[0] && error[2] <= budget[1]) return true;
+    if (silent) return false;
+    if (isfinite(budget[0])) snprintf(asked, sizeof asked, " p99 %.3g", budget[0]);
+    if (isfinite(budget[1])) snprintf(asked + strlen(asked), 32, "%s max %.3g", *asked ? "," : "", budget[1]);
+    cli_message("%s:%d: %s misses its budget: best reached p99 %.3g, max %.3g; asked%s", r->recipe_path, line,
+                name, error[1], error[2], asked);
+    return false;
 }
 
-static int pack(pack_request *r, const lq_recipe *recipe, lq_packed *packed) {
+/* One line a table and a material; exit code 2 and its reason where a budget is missed. */
+static int judge(const pack_request *r, const lq_packing *packing) {
+    const lq_recipe *recipe = packing->recipe;
+    const size_t bytes = lq_packing_bytes(packing);
+    bool kept = true;
+    printf("%-22s %9s %9s %9s %9s\n", "table", "bytes", "rms", "p99", "max");
+    for (size_t i = 0; i < recipe->count; i++) {
+        const lq_measure *m = &packing->tables[i].measure;
+        const lq_recipe_table *t = packing->tables[i].from;
+        kept &= judge_one(r, t->line, t->name, lq_packed_bytes(&packing->tables[i]),
+                          (double[]){m->rms, m->p99, m->max}, (double[]){t->p99, t->max}, !kept);
+    }
+    for (size_t i = 0; i < recipe->material_count; i++) {
+        const lq_lobes_measure *m = &packing->materials[i].measure;
+        const lq_recipe_material *from = packing->materials[i].from;
+        kept &= judge_one(r, from->line, from->name, lq_image_bytes(&packing->materials[i].lobes.image),
+                          (double[]){m->rms, m->p99, m->max}, (double[]){recipe->p99, recipe->max}, !kept);
+    }
+    printf("%-22s %9zu\n", recipe->atlas ? "the atlas" : "all textures", bytes);
+    if (kept && recipe->max_bytes && bytes > recipe->max_bytes) {
+        cli_message("%s: the textures take %zu bytes; asked are at most %zu", r->recipe_path, bytes,
+                    recipe->max_bytes);
+        kept = false;
+    }
+    return kept ? CLI_DONE : CLI_EXCEEDED;
+}
+
+/* Every table and material, and all images in one where that is asked for. */
+static lq_status make_all(pack_request *r, lq_packing *packing, lq_error *error) {
+    const lq_recipe *recipe = packing->recipe;
+    lq_status status = LQ_OK;
+    packing->tables = calloc(recipe->count + 1, sizeof *packing->tables);
+    packing->materials = calloc(recipe->material_count + 1, sizeof *packing->materials);
+    if (!packing->tables || !packing->materials)
+        return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
+    for (size_t i = 0; i < recipe->count && status == LQ_OK; i++) {
+        packing->tables[i].from = &recipe->tables[i];
+        status = pack_make(r, &packing->tables[i], error);
+    }
+    if (status == LQ_OK && recipe->material_count > 0) status = pack_bake(r, packing, error);
+    return status == LQ_OK && recipe->atlas ? lq_packing_place(packing, error) : status;
+}
+
+static int pack(pack_request *r, lq_packing *packing) {
     lq_error error = {""};
     cli_signals_hold();
     lq_status status = lq_folder_check(r->output, &error); /* before the work */
     cli_signals_release();
     if (status == LQ_OK) status = lq_cache_check(r->cache, &error);
+    if (status == LQ_OK) status = make_all(r, packing, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    for (size_t i = 0; i < recipe->count; i++) {
-        packed[i].from = &recipe->tables[i];
-        status = pack_make(r, &packed[i], &error);
-        if (status != LQ_OK) return cli_fail_status(status, &error);
-    }
-    const int code = judge(r, recipe, packed);
+    const int code = judge(r, packing);
     if (code != CLI_DONE) return code; /* the target stays as it was */
-    status = write_held(recipe, packed, r->output, &error);
+    status = write_held(packing, r->output, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 
@@ -174,15 +199,9 @@ static int run(int argc, char **argv) {
     if (request.threads) omp_set_num_threads((int)request.threads);
     lq_status status = lq_recipe_read(&recipe, request.recipe_path, &request.trust, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    lq_packed *packed = calloc(recipe.count, sizeof *packed);
-    const int code = packed ? pack(&request, &recipe, packed) : cli_fail("out of memory");
-    for (size_t i = 0; packed && i < recipe.count; i++) {
-        lq_table_free(packed[i].table);
-        lq_texture_free(&packed[i].texture);
-        lq_factored_textures_free(&packed[i].factors);
-        lq_factored_free(packed[i].factored);
-    }
-    free(packed);
+    lq_packing packing = {.recipe = &recipe};
+    const int code = pack(&request, &packing);
+    lq_packing_free(&packing);
     lq_recipe_free(&recipe);
     return code;
 }

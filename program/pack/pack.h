@@ -17,4 +17,7 @@ typedef struct pack_request {
 /* The table of packed->from: computed or found in the cache, made into textures, measured. */
 lq_status pack_make(pack_request *request, lq_packed *packed, lq_error *error);
 
+/* All materials: baked, made into texels, measured. */
+lq_status pack_bake(pack_request *request, lq_packing *packing, lq_error *error);
+
 #endif

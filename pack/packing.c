@@ -1,0 +1,78 @@
+/* packing.c - what a pack holds, put together: the atlas and the decode source. */
+#include "pack/manifest.h"
+
+#include <stdlib.h>
+
+#include "system/status.h"
+
+int lq_packing_languages(const lq_recipe *recipe) {
+    return recipe->atlas ? LQ_LANGUAGES : LQ_SOURCE_LANGUAGES;
+}
+
+lq_status lq_packing_place(lq_packing *p, lq_error *error) {
+    const lq_recipe *recipe = p->recipe;
+    lq_status status = LQ_OK;
+    size_t *first = p->tiles = calloc(recipe->count + recipe->material_count + 1, sizeof *p->tiles);
+    if (!p->tiles) return lq_fail(error, LQ_NO_MEMORY, "no memory for an atlas");
+    for (size_t t = 0; t < recipe->count; t++, first++)
+        for (size_t i = 0; i < lq_packed_images(&p->tables[t]) && status == LQ_OK; i++) {
+            size_t tile;
+            status = lq_atlas_add(&p->atlas, lq_packed_image(&p->tables[t], i), recipe->tables[t].name, &tile,
+                                  error);
+            if (i == 0) *first = tile;
+        }
+    for (size_t m = 0; m < recipe->material_count && status == LQ_OK; m++, first++)
+        if (p->materials[m].lobes.channel_count > 0)
+            status =
+                lq_atlas_add(&p->atlas, &p->materials[m].lobes.image, p->materials[m].name, first, error);
+    return status == LQ_OK ? lq_atlas_make(&p->atlas, error) : status;
+}
+
+static lq_status write_atlas(const lq_packing *p, lq_language language, const lq_source_table *sources,
+                             const char *path, lq_error *error) {
+    const lq_recipe *recipe = p->recipe;
+    lq_atlas_table tables[LQ_RECIPE_TABLES];
+    lq_atlas_material materials[LQ_RECIPE_MATERIALS];
+    for (size_t i = 0; i < recipe->count; i++) tables[i] = (lq_atlas_table){sources[i], p->tiles[i]};
+    for (size_t i = 0; i < recipe->material_count; i++)
+        materials[i] =
+            (lq_atlas_material){p->materials[i].name, &p->materials[i].lobes, p->tiles[recipe->count + i]};
+    const lq_atlas_contents contents = {&p->atlas, recipe->count, recipe->material_count, tables, materials};
+    return lq_atlas_source_write(language, &contents, path, error);
+}
+
+lq_status lq_packing_source(const lq_packing *p, lq_language language, const char *path, lq_error *error) {
+    lq_source_table tables[LQ_RECIPE_TABLES];
+    for (size_t i = 0; i < p->recipe->count; i++) {
+        const lq_packed *table = &p->tables[i];
+        tables[i] =
+            (lq_source_table){table->from->kind, table->factored ? NULL : &table->texture, &table->factors};
+    }
+    if (p->recipe->atlas) return write_atlas(p, language, tables, path, error);
+    if ((int)language < LQ_SOURCE_LANGUAGES)
+        return lq_source_write(language, tables, p->recipe->count, path, error);
+    return lq_fail(error, LQ_BAD_INPUT, "%s: this language is for packs with an atlas", path);
+}
+
+size_t lq_packing_bytes(const lq_packing *p) {
+    size_t bytes = 0;
+    if (p->recipe->atlas) return lq_image_bytes(&p->atlas.image);
+    for (size_t i = 0; i < p->recipe->count; i++) bytes += lq_packed_bytes(&p->tables[i]);
+    return bytes;
+}
+
+void lq_packing_free(lq_packing *p) {
+    for (size_t i = 0; p->tables && i < p->recipe->count; i++) {
+        lq_table_free(p->tables[i].table);
+        lq_texture_free(&p->tables[i].texture);
+        lq_factored_textures_free(&p->tables[i].factors);
+        lq_factored_free(p->tables[i].factored);
+    }
+    for (size_t i = 0; p->materials && i < p->recipe->material_count; i++)
+        lq_lobes_free(&p->materials[i].lobes);
+    lq_atlas_free(&p->atlas);
+    free(p->tables);
+    free(p->materials);
+    free(p->tiles);
+    *p = (lq_packing){0};
+}

@@ -1,0 +1,139 @@
+/* materials.c - the materials of a scene: baked from the exact stack, made into texels, measured. */
+#include "pack/names.h"
+#include "program/pack/pack.h"
+#include "program/progress.h"
+#include "system/parallel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Where a recipe asks for none. */
+static const lq_lobes_budget DEFAULT = {2e-3, 1e-2};
+
+/* The share of a budget that a bake may be off by at its coarser nodes; that of the finer ones is far less.
+ */
+static const double BAKED = 0.5;
+
+enum { POINTS_PER_SET = 500, FEWEST_SETS = 4, MOST_SETS = 64, CHECK_LEVEL = 1 };
+
+static lq_status out_of_memory(lq_error *error) {
+    snprintf(error->text, sizeof error->text, "out of memory");
+    return LQ_NO_MEMORY;
+}
+
+static lq_lobes_budget budget_of(const lq_recipe *recipe) {
+    if (!isfinite(recipe->p99) && !isfinite(recipe->max)) return DEFAULT;
+    return (lq_lobes_budget){fmin(recipe->p99, recipe->max), recipe->max};
+}
+
+/* Materials on their way: baked once, fitted and checked until they keep their budget. */
+typedef struct fitting {
+    const pack_request *request;
+    lq_packing *packing;
+    lq_baked *baked;
+    lq_lobes_budget budget;
+    double *share; /* of the budget that the next fit of a material is to keep; 0: it is done */
+} fitting;
+
+enum { ATTEMPTS = 4 };
+static const double TIGHTER = 0.6;
+
+static lq_status fit(void *user, size_t i, int thread, lq_error *error) {
+    (void)thread;
+    const fitting *f = user;
+    lq_lobes *lobes = &f->packing->materials[i].lobes;
+    const lq_lobes_budget budget = {f->share[i] * f->budget.p99, f->share[i] * f->budget.max};
+    if (f->share[i] == 0.0) return LQ_OK;
+    lq_lobes_free(lobes);
+    return lq_lobes_make(lobes, &f->baked[i], &budget, error);
+}
+
+/* Those that are to be checked next to each other, and back. */
+static size_t gather(const fitting *f, lq_lobes *lobes) {
+    size_t count = 0;
+    for (size_t i = 0; i < f->packing->recipe->material_count; i++)
+        if (f->share[i] > 0.0) lobes[count++] = f->packing->materials[i].lobes;
+    return count;
+}
+
+/* What keeps its budget is done; what does not is fitted more finely. How many are left. */
+static size_t settle(fitting *f, const lq_lobes_measure *measures) {
+    size_t at = 0, left = 0;
+    for (size_t i = 0; i < f->packing->recipe->material_count; i++) {
+        if (f->share[i] == 0.0) continue;
+        const lq_lobes_measure *m = &measures[at++];
+        f->packing->materials[i].measure = *m;
+        f->share[i] = m->p99 <= f->budget.p99 && m->max <= f->budget.max ? 0.0 : TIGHTER * f->share[i];
+        left += f->share[i] > 0.0;
+    }
+    return left;
+}
+
+static lq_status measure(fitting *f, size_t *left, lq_error *error) {
+    const lq_recipe *recipe = f->packing->recipe;
+    const size_t count = recipe->material_count, asked = recipe->points / POINTS_PER_SET;
+    const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
+    lq_lobes *lobes = calloc(count, sizeof *lobes);
+    lq_lobes_measure *measures = calloc(count, sizeof *measures);
+    lq_status status = lobes && measures ? LQ_OK : out_of_memory(error);
+    cli_progress bar;
+    cli_progress_begin(&bar, "materials, check");
+    if (status == LQ_OK)
+        status = lq_lobes_measure_all(lobes, gather(f, lobes), sets, CHECK_LEVEL, 0.0,
+                                      (int)f->request->threads, &bar.progress, measures, error);
+    cli_progress_end(&bar);
+    if (status == LQ_NOT_CONVERGED) status = LQ_OK; /* some interface took no finer level */
+    if (status == LQ_OK) *left = settle(f, measures);
+    free(lobes);
+    free(measures);
+    return status;
+}
+
+static lq_status fit_all(fitting *f, lq_error *error) {
+    const size_t count = f->packing->recipe->material_count;
+    size_t left = count;
+    lq_status status = LQ_OK;
+    for (size_t i = 0; i < count; i++) f->share[i] = 1.0;
+    for (int attempt = 0; attempt < ATTEMPTS && left > 0 && status == LQ_OK; attempt++) {
+        status = lq_parallel(count, (int)f->request->threads, fit, f, NULL, error);
+        if (status == LQ_OK || status == LQ_NOT_CONVERGED) status = measure(f, &left, error);
+    }
+    return status; /* what is left misses its budget: the measured error says so */
+}
+
+static lq_status bake(const pack_request *r, const lq_recipe *recipe, const lq_lobes_budget *budget,
+                      const lq_material *materials, lq_baked *baked, lq_error *error) {
+    double mu[LQ_LOBES_COSINES];
+    cli_progress bar;
+    lq_lobes_cosines(mu);
+    cli_progress_begin(&bar, "materials");
+    const lq_status status =
+        lq_bake(materials, recipe->material_count, mu, LQ_LOBES_COSINES,
+                BAKED * fmin(budget->p99, budget->max), (int)r->threads, &bar.progress, baked, error);
+    cli_progress_end(&bar);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
+}
+
+lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
+    const lq_recipe *recipe = packing->recipe;
+    const size_t count = recipe->material_count;
+    lq_material *materials = calloc(count, sizeof *materials);
+    lq_baked *baked = calloc(count, sizeof *baked);
+    fitting f = {r, packing, baked, budget_of(recipe), calloc(count, sizeof *f.share)};
+    lq_status status = materials && baked && f.share ? LQ_OK : out_of_memory(error);
+    for (size_t i = 0; i < count && status == LQ_OK; i++) {
+        packing->materials[i].from = &recipe->materials[i];
+        lq_make_identifier(packing->materials[i].name, recipe->materials[i].name);
+        materials[i] = recipe->materials[i].material;
+    }
+    if (status == LQ_OK) status = bake(r, recipe, &f.budget, materials, baked, error);
+    if (status == LQ_OK) status = fit_all(&f, error);
+    /* The lobes point to a material that stays. */
+    for (size_t i = 0; i < count; i++) packing->materials[i].lobes.material = &recipe->materials[i].material;
+    for (size_t i = 0; baked && i < count; i++) lq_baked_free(&baked[i]);
+    free(materials);
+    free(baked);
+    free(f.share);
+    return status;
+}
