@@ -265,6 +265,19 @@ static void fill_borders(lq_lobes *l) {
     }
 }
 
+lq_status lq_lobes_allocate(lq_lobes *l, lq_error *error) {
+    const size_t slices = l->axis_count > 2 ? l->axes[2].size : 1;
+    return lq_image_create(&l->image, l->axes[0].size, slices * lq_lobes_pitch(l) - LQ_LOBES_BORDER, 1,
+                           l->texels, LQ_LOBES_PER_TEXEL, error);
+}
+
+const char *lq_lobes_number_name(int k) {
+    static const char *const names[LQ_MATERIAL_NUMBERS] = {
+        "top.r",     "top.g",     "top.b",     "inner.r", "inner.g", "inner.b", "inner_alpha",
+        "through.r", "through.g", "through.b", "back.r",  "back.g",  "back.b",  "base_alpha"};
+    return names[k];
+}
+
 size_t lq_lobes_pitch(const lq_lobes *l) {
     return (l->axis_count > 1 ? l->axes[1].size : 1) + LQ_LOBES_BORDER;
 }
@@ -419,10 +432,7 @@ static lq_status try_choice(lq_lobes *l, const samples *s, const choice *c, cons
         status = set_axis(&l->axes[1 + r], range->name, range->min, range->max, c->size[1 + r], c->map[1 + r],
                           error);
     }
-    const size_t slices = l->axis_count > 2 ? l->axes[2].size : 1;
-    if (status == LQ_OK)
-        status = lq_image_create(&l->image, l->axes[0].size, slices * lq_lobes_pitch(l) - LQ_LOBES_BORDER, 1,
-                                 l->texels, LQ_LOBES_PER_TEXEL, error);
+    if (status == LQ_OK) status = lq_lobes_allocate(l, error);
     if (status == LQ_OK && !allocate(&t)) status = lq_fail(error, LQ_NO_MEMORY, "no memory for texels");
     for (int ch = 0; ch < l->channel_count && status == LQ_OK; ch++) fit_channel(&t, ch);
     if (status == LQ_OK) fill_borders(l);

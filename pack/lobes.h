@@ -39,6 +39,12 @@ lq_status lq_lobes_make(lq_lobes *lobes, const lq_baked *baked, const lq_lobes_b
                         lq_error *error);
 void lq_lobes_free(lq_lobes *lobes);
 
+/* Its image, all 0, for axes and channels that are set: for a reader. */
+lq_status lq_lobes_allocate(lq_lobes *lobes, lq_error *error);
+
+/* What a manifest calls number `k` of LQ_MATERIAL_NUMBERS: "top.r". */
+const char *lq_lobes_number_name(int k);
+
 /* Rows from one slice to the next: those of a slice, and a border. */
 size_t lq_lobes_pitch(const lq_lobes *lobes);
 

@@ -220,12 +220,9 @@ static json_t *describe_table(const lq_packing *packing, size_t index, json_t *s
 
 /* A material: its stack, which channel holds each number and which are constants, and its error. */
 static json_t *describe_lobes(const lq_lobes *lobes) {
-    static const char *const names[LQ_MATERIAL_NUMBERS] = {
-        "top.r",     "top.g",     "top.b",     "inner.r", "inner.g", "inner.b", "inner_alpha",
-        "through.r", "through.g", "through.b", "back.r",  "back.g",  "back.b",  "base_alpha"};
     json_t *numbers = json_object();
     for (int k = 0; k < LQ_MATERIAL_NUMBERS; k++)
-        json_object_set_new(numbers, names[k],
+        json_object_set_new(numbers, lq_lobes_number_name(k),
                             lobes->channel[k] < 0 ? json_pack("{s:f}", "constant", lobes->constant[k])
                                                   : json_pack("{s:i}", "channel", lobes->channel[k]));
     return numbers;

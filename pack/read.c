@@ -19,6 +19,7 @@
 /* What is being read. */
 typedef struct reader {
     const char *folder;
+    const lq_shipped *atlas; /* NULL: every image has files of its own */
     lq_error *error;
 } reader;
 
@@ -87,15 +88,68 @@ static lq_status read_files(const reader *r, json_t *files, lq_image *image, lq_
     return status;
 }
 
+/* Layer `layer` of an image out of the atlas, at the tile [x, y, width, height]. */
+static lq_status cut_tile(const reader *r, json_t *tile, size_t layer, lq_image *image, const char *name) {
+    const lq_image *atlas = &r->atlas->texture.image;
+    json_int_t x, y, width, height;
+    if (json_unpack(tile, "[I, I, I, I]", &x, &y, &width, &height) != 0 || x < 0 || y < 0 ||
+        (size_t)width != image->width || (size_t)height != image->height ||
+        (size_t)x + image->width > atlas->width || (size_t)y + image->height > atlas->height)
+        return refuse(r, name, "a tile that is not in the atlas, or not of the size of its texture");
+    const size_t channels = (size_t)image->channels;
+    for (size_t row = 0; row < image->height; row++)
+        for (size_t column = 0; column < image->width; column++)
+            memcpy(image->data + ((layer * image->height + row) * image->width + column) * channels,
+                   atlas->data + (((size_t)y + row) * atlas->width + (size_t)x + column) * 4,
+                   channels * sizeof(float));
+    return LQ_OK;
+}
+
+/* All layers of an image from tile `first` on. */
+static lq_status cut_image(const reader *r, json_t *tiles, size_t first, lq_image *image, const char *name) {
+    lq_status status = LQ_OK;
+    for (size_t l = 0; l < image->layers && status == LQ_OK; l++)
+        status = cut_tile(r, json_array_get(tiles, first + l), l, image, name);
+    return status;
+}
+
+/* An image from files of its own, or from the atlas, whose files count as the table's. */
+static lq_status read_image(const reader *r, json_t *files, json_t *tiles, size_t first, lq_image *image,
+                            lq_shipped *s) {
+    if (!r->atlas) return read_files(r, files, image, s);
+    s->files = r->atlas->files;
+    s->altered = r->atlas->altered;
+    s->differing = r->atlas->differing;
+    snprintf(s->suspect, sizeof s->suspect, "%s", r->atlas->suspect);
+    return cut_image(r, tiles, first, image, s->name);
+}
+
+static lq_status read_atlas(reader *r, json_t *item, lq_shipped *atlas) {
+    enum { LARGEST = 16384 };
+    json_int_t width, height;
+    if (!item) return LQ_OK;
+    if (json_unpack(item, "{s:I, s:I}", "width", &width, "height", &height) != 0 || width < 1 || height < 1 ||
+        width > LARGEST || height > LARGEST)
+        return refuse(r, "atlas", "no width and height");
+    snprintf(atlas->name, sizeof atlas->name, "atlas");
+    lq_status status =
+        lq_image_create(&atlas->texture.image, (size_t)width, (size_t)height, 1, 1, 4, r->error);
+    if (status == LQ_OK) status = read_files(r, json_object_get(item, "files"), &atlas->texture.image, atlas);
+    if (status == LQ_OK) r->atlas = atlas;
+    return status;
+}
+
 /* ------------------------------------------------------------------------------------ factors */
 
-static lq_status read_factor(const reader *r, json_t *item, lq_factor *factor, lq_shipped *s) {
+static lq_status read_factor(const reader *r, json_t *item, json_t *tiles, size_t *first, lq_factor *factor,
+                             lq_shipped *s) {
     const size_t width = factor->axes[0].texels.size, texels = lq_factor_texels(factor);
     lq_image image;
     lq_status status =
         lq_image_create(&image, width, texels / width, 1, (factor->base_count + 3) / 4, 4, r->error);
     image.array = true;
-    if (status == LQ_OK) status = read_files(r, json_object_get(item, "files"), &image, s);
+    if (status == LQ_OK) status = read_image(r, json_object_get(item, "files"), tiles, *first, &image, s);
+    *first += image.layers;
     for (size_t b = 0; status == LQ_OK && b < factor->base_count; b++)
         for (size_t i = 0; i < texels; i++)
             factor->data[b * texels + i] = image.data[(b / 4 * texels + i) * 4 + b % 4];
@@ -104,9 +158,9 @@ static lq_status read_factor(const reader *r, json_t *item, lq_factor *factor, l
 }
 
 static lq_status read_factored(const reader *r, json_t *item, lq_shipped *s) {
-    json_t *textures = json_object_get(item, "textures");
+    json_t *textures = json_object_get(item, "textures"), *tiles = json_object_get(item, "tiles");
     const char *structure = json_string_value(json_object_get(item, "structure"));
-    size_t next = 0;
+    size_t next = 0, tile = 0;
     s->factored = calloc(1, sizeof *s->factored);
     if (!s->factored) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", s->name);
     if (!structure) return refuse(r, s->name, "no 'structure'; made by an earlier lacquer?");
@@ -120,7 +174,8 @@ static lq_status read_factored(const reader *r, json_t *item, lq_shipped *s) {
     }
     for (int p = 0; p < s->factored->piece_count; p++)
         for (int f = 0; f < s->factored->pieces[p].factor_count && status == LQ_OK; f++)
-            status = read_factor(r, json_array_get(textures, next++), &s->factored->pieces[p].factors[f], s);
+            status = read_factor(r, json_array_get(textures, next++), tiles, &tile,
+                                 &s->factored->pieces[p].factors[f], s);
     if (status != LQ_OK) return status;
     return lq_factored_check(s->factored, &cause) == LQ_OK ? LQ_OK : refuse(r, s->name, cause.text);
 }
@@ -167,7 +222,9 @@ static lq_status read_texture(const reader *r, json_t *item, lq_shipped *s) {
                                  s->kind->channel_count, r->error);
     for (int a = 0; a < s->kind->axis_count; a++) lq_axis_free(&axes[a]);
     if (status == LQ_OK) status = lq_texture_make(&s->texture, s->table, s->name, r->error);
-    if (status == LQ_OK) status = read_files(r, json_object_get(item, "files"), &s->texture.image, s);
+    if (status == LQ_OK)
+        status = read_image(r, json_object_get(item, "files"), json_object_get(item, "tiles"), 0,
+                            &s->texture.image, s);
     if (status == LQ_OK) spread(&s->texture.image, s->table);
     return status;
 }
@@ -210,6 +267,65 @@ static lq_status read_table(const reader *r, json_t *item, lq_shipped *s) {
     return status == LQ_OK ? read_facts(r, item, s) : status;
 }
 
+/* ---------------------------------------------------------------------------------- materials */
+
+static lq_status read_number(const reader *r, json_t *item, const char *name, int k, lq_lobes *lobes) {
+    json_t *number = json_object_get(item, lq_lobes_number_name(k));
+    json_t *channel = json_object_get(number, "channel"), *constant = json_object_get(number, "constant");
+    lobes->channel[k] = json_is_integer(channel) ? (int)json_integer_value(channel) : -1;
+    lobes->constant[k] = json_number_value(constant);
+    if (json_is_number(constant) && !channel) return LQ_OK;
+    if (lobes->channel[k] < 0 || lobes->channel[k] >= LQ_MATERIAL_NUMBERS)
+        return refuse(r, name, "a number that is neither a channel nor a constant");
+    if (lobes->channel[k] >= lobes->channel_count) lobes->channel_count = lobes->channel[k] + 1;
+    return LQ_OK;
+}
+
+static lq_status read_lobes(const reader *r, json_t *item, lq_shipped_material *m) {
+    lq_lobes *l = &m->lobes;
+    json_t *numbers = json_object_get(item, "numbers");
+    lq_status status = LQ_OK;
+    *l = (lq_lobes){.material = &m->material, .axis_count = 1 + m->material.range_count};
+    for (int k = 0; k < LQ_MATERIAL_NUMBERS && status == LQ_OK; k++)
+        status = read_number(r, numbers, m->name, k, l);
+    l->p99 = bound_of(item, "budget-p99");
+    l->max = bound_of(item, "budget-max");
+    l->texels = (size_t)(l->channel_count + LQ_LOBES_PER_TEXEL - 1) / LQ_LOBES_PER_TEXEL;
+    for (int a = 0; a < l->axis_count && l->channel_count > 0 && status == LQ_OK; a++)
+        status = read_axis(r, item, a == 0 ? "mu" : m->material.ranges[a - 1].name, &l->axes[a], m->name);
+    if (status != LQ_OK || l->channel_count == 0) return status;
+    status = lq_lobes_allocate(l, r->error);
+    return status == LQ_OK ? cut_image(r, json_object_get(item, "tiles"), 0, &l->image, m->name) : status;
+}
+
+static lq_status read_material(const reader *r, json_t *item, lq_shipped_material *m) {
+    lq_error cause = {""};
+    const char *name = json_string_value(json_object_get(item, "name"));
+    const char *stack = json_string_value(json_object_get(item, "stack"));
+    if (!name || !stack || lq_name_check("name", name, &cause) != LQ_OK)
+        return refuse(r, "", "a material without 'name' or 'stack'");
+    snprintf(m->name, sizeof m->name, "%s", name);
+    if (lq_stack_parse(&m->stack, stack, name, LQ_STACK_RANGES, &cause) != LQ_OK ||
+        lq_material_describe(&m->material, m->stack, &cause) != LQ_OK)
+        return refuse(r, name, cause.text);
+    return read_lobes(r, item, m);
+}
+
+static lq_status read_materials(const reader *r, json_t *list, lq_pack *pack) {
+    const size_t count = json_array_size(list);
+    lq_status status = LQ_OK;
+    if (count == 0) return LQ_OK;
+    if (!r->atlas || count > LQ_RECIPE_MATERIALS)
+        return refuse(r, "materials", "without an atlas, or too many");
+    pack->materials = calloc(count, sizeof *pack->materials);
+    if (!pack->materials) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->folder);
+    for (size_t i = 0; i < count && status == LQ_OK; i++)
+        status = read_material(r, json_array_get(list, i), &pack->materials[pack->material_count++]);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------ the pack */
+
 bool lq_pack_found(const char *folder) {
     char path[4096];
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
@@ -217,7 +333,7 @@ bool lq_pack_found(const char *folder) {
 }
 
 lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
-    const reader r = {folder, error};
+    reader r = {folder, NULL, error};
     char path[4096];
     json_error_t wrong;
     *pack = (lq_pack){.count = 0};
@@ -231,10 +347,12 @@ lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
     if (!name || count == 0 || count > LQ_RECIPE_TABLES)
         status = refuse(&r, "", "not the manifest of a pack");
     else snprintf(pack->name, sizeof pack->name, "%s", name);
+    if (status == LQ_OK) status = read_atlas(&r, json_object_get(root, "atlas"), &pack->atlas);
     if (status == LQ_OK) pack->tables = calloc(count, sizeof *pack->tables);
     if (status == LQ_OK && !pack->tables) status = lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
     for (size_t i = 0; status == LQ_OK && i < count; i++)
         status = read_table(&r, json_array_get(tables, i), &pack->tables[pack->count++]);
+    if (status == LQ_OK) status = read_materials(&r, json_object_get(root, "materials"), pack);
     json_decref(root);
     if (status != LQ_OK) lq_pack_free(pack);
     return status;
@@ -250,6 +368,12 @@ void lq_shipped_free(lq_shipped *s) {
 
 void lq_pack_free(lq_pack *pack) {
     for (size_t i = 0; i < pack->count; i++) lq_shipped_free(&pack->tables[i]);
+    for (size_t i = 0; i < pack->material_count; i++) {
+        lq_lobes_free(&pack->materials[i].lobes);
+        lq_stack_free(pack->materials[i].stack);
+    }
+    lq_shipped_free(&pack->atlas);
     free(pack->tables);
+    free(pack->materials);
     *pack = (lq_pack){.count = 0};
 }

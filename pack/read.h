@@ -2,6 +2,7 @@
 #ifndef LACQUER_PACK_READ_H
 #define LACQUER_PACK_READ_H
 
+#include "pack/lobes.h"
 #include "pack/recipe.h"
 #include "pack/texture.h"
 
@@ -21,10 +22,21 @@ typedef struct lq_shipped {
     char suspect[128];         /* the first file that was altered or differs */
 } lq_shipped;
 
+/* One material of a scene. */
+typedef struct lq_shipped_material {
+    char name[LQ_NAME_SIZE];
+    lq_stack *stack;
+    lq_material material;
+    lq_lobes lobes; /* p99 and max: its budget; INFINITY: none */
+} lq_shipped_material;
+
 typedef struct lq_pack {
     char name[LQ_NAME_SIZE];
     size_t count;
     lq_shipped *tables;
+    size_t material_count;
+    lq_shipped_material *materials;
+    lq_shipped atlas; /* its image, where textures are in one; and what its files are like */
 } lq_pack;
 
 /* Whether a folder holds a manifest. */

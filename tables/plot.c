@@ -40,7 +40,7 @@ static bool drawable(double v, bool logarithmic) {
     return isfinite(v) && (!logarithmic || v > 0.0);
 }
 
-static bool has_point(const lq_plot *plot, const lq_series *series, size_t i) {
+static bool has_point(const lq_plot *plot, const lq_plot_line *series, size_t i) {
     return drawable(series->x[i], plot->x.logarithmic) && drawable(series->y[i], plot->y.logarithmic);
 }
 
@@ -177,7 +177,7 @@ static void draw_axes(FILE *out, const lq_plot *plot, const scale *x, const scal
 }
 
 /* One shape a hue, so that colour is never the only difference. */
-static void draw_marker(FILE *out, const lq_series *series, double x, double y) {
+static void draw_marker(FILE *out, const lq_plot_line *series, double x, double y) {
     static const char *const shapes[LQ_PLOT_HUES] = {"M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
                                                      "M-4 -4h8v8h-8z", "M0 -5.2L5 3.8H-5z",
                                                      "M0 -5.6L5.6 0L0 5.6L-5.6 0z"};
@@ -187,11 +187,11 @@ static void draw_marker(FILE *out, const lq_series *series, double x, double y) 
             y);
 }
 
-static const char *dashes(const lq_series *series) {
+static const char *dashes(const lq_plot_line *series) {
     return series->secondary ? " stroke-dasharray=\"5 4\"" : "";
 }
 
-static void draw_series(FILE *out, const lq_plot *plot, const lq_series *series, const scale *x,
+static void draw_series(FILE *out, const lq_plot *plot, const lq_plot_line *series, const scale *x,
                         const scale *y) {
     fprintf(
         out,
@@ -208,7 +208,7 @@ static void draw_series(FILE *out, const lq_plot *plot, const lq_series *series,
 }
 
 /* Below and left of the point, where falling curves leave room; above and right at the left edge. */
-static void draw_labels(FILE *out, const lq_plot *plot, const lq_series *series, const scale *x,
+static void draw_labels(FILE *out, const lq_plot *plot, const lq_plot_line *series, const scale *x,
                         const scale *y) {
     for (size_t i = 0; series->labels && i < series->count; i++) {
         if (!has_point(plot, series, i)) continue;
@@ -222,7 +222,7 @@ static void draw_labels(FILE *out, const lq_plot *plot, const lq_series *series,
 static void draw_legend(FILE *out, const lq_plot *plot) {
     double x = left;
     for (size_t k = 0; k < plot->series_count; k++) {
-        const lq_series *series = &plot->series[k];
+        const lq_plot_line *series = &plot->series[k];
         fprintf(out,
                 "<g class=\"h%d\"><path stroke=\"currentColor\" stroke-width=\"2\"%s d=\"M%.1f %.1fh28\"/>\n",
                 series->hue, dashes(series), x, top - 24);

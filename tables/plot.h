@@ -13,14 +13,14 @@ typedef struct lq_plot_axis {
 
 enum { LQ_PLOT_HUES = 4, LQ_PLOT_MAX_SERIES = 8 };
 
-typedef struct lq_series {
+typedef struct lq_plot_line {
     const char *name;
     size_t count;
     const double *x, *y;       /* a point that is not finite, or not positive on a log axis, is left out */
     const char *const *labels; /* a short text beside each point, or NULL */
     int hue;                   /* 0 to LQ_PLOT_HUES - 1 */
     bool secondary;            /* dashed and hollow: the same thing measured another way */
-} lq_series;
+} lq_plot_line;
 
 /* An arrow at height y from x_from to x_to that states the distance between two curves. */
 typedef struct lq_plot_span {
@@ -31,7 +31,7 @@ typedef struct lq_plot_span {
 typedef struct lq_plot {
     const char *title, *subtitle; /* subtitle may be NULL */
     lq_plot_axis x, y;
-    const lq_series *series;
+    const lq_plot_line *series;
     size_t series_count;
     const lq_plot_span *span; /* or NULL */
 } lq_plot;

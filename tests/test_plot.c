@@ -46,7 +46,7 @@ static size_t occurrences(const char *text, const char *what) {
 
 static const double x[4] = {1e-6, 1e-4, 1e-2, 1.0}, y[4] = {1e-2, 0.0, 1e-4, NAN};
 
-static lq_plot chart(const lq_series *series) {
+static lq_plot chart(const lq_plot_line *series) {
     const lq_plot plot = {.title = "a < b & c",
                           .x = {"seconds", true},
                           .y = {"error", true},
@@ -57,7 +57,7 @@ static lq_plot chart(const lq_series *series) {
 
 static void test_chart(void **state) {
     (void)state;
-    const lq_series series = {.name = "solver", .count = 4, .x = x, .y = y, .hue = 1};
+    const lq_plot_line series = {.name = "solver", .count = 4, .x = x, .y = y, .hue = 1};
     const lq_plot plot = chart(&series);
     lq_error error = {""};
     assert_int_equal(lq_plot_write(&plot, path, &error), LQ_OK);
@@ -72,7 +72,7 @@ static void test_chart(void **state) {
 static void test_linear_axes(void **state) {
     (void)state;
     const double a[3] = {-1.0, 0.0, 2.0}, b[3] = {3.0, 3.0, 3.0};
-    const lq_series series = {.name = "flat", .count = 3, .x = a, .y = b};
+    const lq_plot_line series = {.name = "flat", .count = 3, .x = a, .y = b};
     lq_plot plot = chart(&series);
     plot.x.logarithmic = plot.y.logarithmic = false;
     assert_int_equal(lq_plot_write(&plot, path, NULL), LQ_OK);
@@ -84,10 +84,10 @@ static void test_linear_axes(void **state) {
 static void test_refusals(void **state) {
     (void)state;
     lq_error error;
-    lq_series series = {.name = "nothing", .count = 1, .x = &x[3], .y = &y[3]};
+    lq_plot_line series = {.name = "nothing", .count = 1, .x = &x[3], .y = &y[3]};
     const lq_plot plot = chart(&series);
     assert_int_equal(lq_plot_write(&plot, path, &error), LQ_BAD_INPUT);
-    series = (lq_series){.name = "hue", .count = 1, .x = x, .y = y, .hue = LQ_PLOT_HUES};
+    series = (lq_plot_line){.name = "hue", .count = 1, .x = x, .y = y, .hue = LQ_PLOT_HUES};
     assert_int_equal(lq_plot_write(&plot, path, &error), LQ_BAD_INPUT);
     series.hue = 0;
     assert_int_equal(lq_plot_write(&plot, "/nonexistent/chart.svg", &error), LQ_IO);

@@ -86,10 +86,10 @@ static void count_bins(const lq_certificate *c, int stage, double *x, double *y)
 
 lq_status lq_report_histogram(const lq_certificate *c, FILE *out, lq_error *error) {
     double x[LQ_STAGES_MAX][BINS], y[LQ_STAGES_MAX][BINS];
-    lq_series series[LQ_STAGES_MAX];
+    lq_plot_line series[LQ_STAGES_MAX];
     for (int s = 0; s < c->request.stage_count; s++) {
         count_bins(c, s, x[s], y[s]);
-        series[s] = (lq_series){.name = c->request.stages[s].name, .count = BINS, .x = x[s], .y = y[s]};
+        series[s] = (lq_plot_line){.name = c->request.stages[s].name, .count = BINS, .x = x[s], .y = y[s]};
         series[s].hue = s % LQ_PLOT_HUES;
         series[s].secondary = s >= LQ_PLOT_HUES;
     }

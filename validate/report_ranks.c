@@ -92,7 +92,7 @@ lq_status lq_report_ranks(const lq_rank *ranks, size_t count, FILE *out, lq_erro
         p99[i] = ranks[i].p99;
         rms[i] = ranks[i].rms;
     }
-    const lq_series series[] = {{"max", count, bytes, max, NULL, 1, false},
+    const lq_plot_line series[] = {{"max", count, bytes, max, NULL, 1, false},
                                 {"p99", count, bytes, p99, NULL, 2, false},
                                 {"rms", count, bytes, rms, NULL, 0, false}};
     const lq_plot plot = {.title = "Terms, bytes and error",

@@ -127,7 +127,7 @@ lq_status bench_write_svg(const bench_job *job, lq_error *error) {
     curve solver, walk;
     gather(job, false, &solver);
     gather(job, true, &walk);
-    const lq_series series[] = {
+    const lq_plot_line series[] = {
         {"solver at tolerance, rms", solver.count, solver.cost, solver.rms, solver.labels, 0, false},
         {"largest", solver.count, solver.cost, solver.max, NULL, 0, true},
         {"random walk of N samples, rms", walk.count, walk.cost, walk.rms, walk.labels, 1, false},

@@ -101,7 +101,7 @@ static lq_status write_charts(bench_page *page, lq_error *error) {
 static lq_status write_compression_chart(const bench_page *page, size_t from, size_t *end, lq_error *error) {
     enum { SCHEMES = 2, POINTS = 16 };
     double bytes[SCHEMES][POINTS], worst[SCHEMES][POINTS];
-    lq_series series[SCHEMES];
+    lq_plot_line series[SCHEMES];
     char path[PATH_SIZE], title[NAME];
     const char *kind = page->compressions[from].kind;
     size_t count = 0;
@@ -111,10 +111,10 @@ static lq_status write_compression_chart(const bench_page *page, size_t from, si
         if (count == 0 || strcmp(series[count - 1].name, c->scheme) != 0) {
             if (count == SCHEMES) continue;
             series[count] =
-                (lq_series){c->scheme, 0, bytes[count], worst[count], NULL, (int)count, c->scheme[0] == 's'};
+                (lq_plot_line){c->scheme, 0, bytes[count], worst[count], NULL, (int)count, c->scheme[0] == 's'};
             count++;
         }
-        lq_series *s = &series[count - 1];
+        lq_plot_line *s = &series[count - 1];
         if (s->count == POINTS) continue;
         bytes[count - 1][s->count] = (double)c->bytes;
         worst[count - 1][s->count++] = c->max;

@@ -26,7 +26,7 @@ static bool draw(const fit_job *job, const char *path, bool residual) {
     double *at = malloc(job->count * sizeof *at), *values[SERIES];
     bool memory = at != NULL;
     for (int k = 0; k < SERIES; k++) memory &= (values[k] = malloc(job->count * sizeof(double))) != NULL;
-    lq_series series[SERIES] = {
+    lq_plot_line series[SERIES] = {
         {.name = "exact"}, {.name = family->name, .hue = 1}, {.hue = 2, .secondary = true}};
     series[PAPER].name = job->published >= 0 ? lq_family_at(job->published)->source : "";
     const size_t first = residual ? FITTED : EXACT, last = job->published >= 0 ? PAPER : FITTED;

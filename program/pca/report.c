@@ -107,7 +107,7 @@ static lq_status write_svg(const pca_request *request, const lq_pca_try *tries, 
         p99[t] = sorted[t].errors.p99;
         rms[t] = sorted[t].errors.rms;
     }
-    const lq_series series[] = {{"max", count, x, max, NULL, 0, false},
+    const lq_plot_line series[] = {{"max", count, x, max, NULL, 0, false},
                                 {"p99", count, x, p99, NULL, 1, false},
                                 {"rms", count, x, rms, NULL, 2, false}};
     const lq_plot plot = {.title = "error of the factors tried",

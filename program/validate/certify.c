@@ -7,6 +7,7 @@
 #include "program/options.h"
 #include "program/output.h"
 #include "program/progress.h"
+#include "program/validate/materials.h"
 #include "validate/certificate_pack.h"
 #include "validate/report.h"
 
@@ -168,11 +169,13 @@ static lq_status make_table(const lq_shipped *shipped, lq_certified *certified, 
     return status;
 }
 
-static lq_status make_pack(const certify_request *request, lq_certified **list, size_t *count,
+/* The materials first: their lines stand above those of the tables. */
+static lq_status make_pack(const certify_request *request, lq_certified **list, size_t *count, bool *exceeded,
                            lq_error *error) {
     lq_pack pack;
     lq_status status = lq_pack_read(&pack, request->path, error);
     if (status != LQ_OK) return status;
+    status = validate_materials(request, &pack, exceeded, error);
     *list = calloc(pack.count, sizeof **list);
     if (!*list) status = LQ_NO_MEMORY;
     for (size_t i = 0; i < pack.count && status == LQ_OK; i++) {
@@ -194,12 +197,13 @@ bool certify_takes_alone(const char *path) {
 int validate_certify(const certify_request *request) {
     lq_certified *list = NULL;
     size_t count = 0;
+    bool exceeded = false;
     lq_error error = {""};
     lq_status status;
     if (is_folder(request->path) && request->table) {
         return cli_fail("--table needs a factor file; '%s' is a folder", request->path);
     } else if (is_folder(request->path) && lq_pack_found(request->path)) {
-        status = make_pack(request, &list, &count, &error);
+        status = make_pack(request, &list, &count, &exceeded, &error);
     } else if (is_folder(request->path)) {
         status = make_folder(request, &list, &count, &error);
     } else {
@@ -211,5 +215,5 @@ int validate_certify(const certify_request *request) {
     const int code = status == LQ_OK ? report(request, list, count) : cli_fail_status(status, &error);
     for (size_t i = 0; i < count; i++) lq_certified_free(&list[i]);
     free(list);
-    return code;
+    return code == CLI_DONE && exceeded ? CLI_EXCEEDED : code;
 }
