@@ -112,29 +112,31 @@ typedef struct lights {
     size_t count;
     int level; /* < 0: exact, to */
     double tolerance;
-    int channels;
+    int channels;          /* of all stacks */
     lq_stack_light *light; /* [(m * channels + c) * 2 + path] */
 } lights;
 
-static lq_status solve(const lq_stack *stack, lights *l, lq_error *error) {
+static lq_status solve(const lq_stack *const *stacks, size_t count, lights *l, lq_error *error) {
     const lq_stack_query query = {
         .mu = l->mu, .mu_count = l->count, .paths = 2, .tolerance = l->tolerance, .threads = 1};
-    l->channels = lq_stack_channels(stack);
+    l->channels = 0;
+    for (size_t i = 0; i < count; i++) l->channels += lq_stack_channels(stacks[i]);
     if (l->level < 0) {
-        const lq_status status = lq_stack_solve(stack, &query, l->light, NULL, error);
+        const lq_status status = lq_stack_solve_list(stacks, count, &query, l->light, NULL, error);
         return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* what is left is far below what a texture has */
     }
     lq_plan plan;
-    lq_status status = lq_stack_solvable(stack, &query, error);
-    if (status == LQ_OK) status = lq_plan_make(&plan, stack, false, LQ_MULTIPLE, error);
+    lq_status status = LQ_OK;
+    for (size_t i = 0; i < count && status == LQ_OK; i++)
+        status = lq_stack_solvable(stacks[i], &query, error);
+    if (status == LQ_OK) status = lq_plan_make(&plan, stacks, count, false, LQ_MULTIPLE, error);
     if (status != LQ_OK) return status;
     status = lq_stack_level(&plan, &query, l->level, l->light, NULL, error);
     lq_plan_free(&plan);
     return status;
 }
 
-static const lq_stack_lobe *lobe(const lights *l, size_t m, int colour, int path) {
-    const int channel = colour < l->channels ? colour : 0;
+static const lq_stack_lobe *lobe(const lights *l, size_t m, int channel, int path) {
     return &l->light[(m * (size_t)l->channels + (size_t)channel) * 2 + (size_t)path].reflected;
 }
 
@@ -158,12 +160,13 @@ static void set_inner_alpha(const lq_spread *spread, size_t m, double across, do
 
 static lq_status solve_conductor(const lq_stack *stack, lights *l, const lq_spread *spread, double *numbers,
                                  lq_error *error) {
-    const lq_status status = solve(stack, l, error);
+    const lq_status status = solve(&stack, 1, l, error);
     for (size_t m = 0; m < l->count && status == LQ_OK; m++) {
         double *n = numbers + m * LQ_MATERIAL_NUMBERS, across = 0.0;
         for (int c = 0; c < LQ_MATERIAL_COLOURS; c++) {
-            n[LQ_MATERIAL_TOP + c] = lobe(l, m, c, 0)->energy;
-            if (stack->layer_count > 1) add_inner(lobe(l, m, c, 1), c, n, &across);
+            const int channel = c < l->channels ? c : 0;
+            n[LQ_MATERIAL_TOP + c] = lobe(l, m, channel, 0)->energy;
+            if (stack->layer_count > 1) add_inner(lobe(l, m, channel, 1), c, n, &across);
         }
         set_inner_alpha(spread, m, across, n);
     }
@@ -180,41 +183,53 @@ static void split_albedo(lq_stack *split, const lq_stack *stack, int colour) {
     split->layers[stack->layer_count - 1].rho = (lq_quantity){LQ_RGB, {0.0, 0.5, 1.0}, 1.0};
 }
 
-static double total(const lights *l, size_t m, int albedo) {
-    return lobe(l, m, albedo, 0)->energy + lobe(l, m, albedo, 1)->energy;
+enum { DARK, HALF, WHITE, ALBEDOS };
+
+/* Light of a colour at one of the three albedos; colours that do not differ were solved once. */
+static const lq_stack_lobe *lit(const lights *l, size_t m, int colour, int albedo, int path) {
+    const int channel = ALBEDOS * colour + albedo;
+    return lobe(l, m, channel < l->channels ? channel : albedo, path);
+}
+
+static double total(const lights *l, size_t m, int colour, int albedo) {
+    return lit(l, m, colour, albedo, 0)->energy + lit(l, m, colour, albedo, 1)->energy;
 }
 
 /* Of a colour: back from energies at rho 1/2 (h) and 1 (w) less that at 0, which are through rho / (1 - rho
  * back): back = (w - 2 h) / (w - h) at any cosine, here of their sums. And E[across] of what left the base.
  */
-static void read_base(const lights *l, double *back, double *across) {
+static void read_base(const lights *l, int colour, double *back, double *across) {
     double half = 0.0, white = 0.0, spread = 0.0;
     for (size_t m = 0; m < l->count; m++) {
-        const lq_stack_lobe *dark = lobe(l, m, 0, 1), *lit = lobe(l, m, 2, 1);
-        half += total(l, m, 1) - total(l, m, 0);
-        white += total(l, m, 2) - total(l, m, 0);
-        spread += lit->energy * lit->across - dark->energy * dark->across;
+        const lq_stack_lobe *dark = lit(l, m, colour, DARK, 1), *bright = lit(l, m, colour, WHITE, 1);
+        half += total(l, m, colour, HALF) - total(l, m, colour, DARK);
+        white += total(l, m, colour, WHITE) - total(l, m, colour, DARK);
+        spread += bright->energy * bright->across - dark->energy * dark->across;
     }
     *back = white > half ? fmin(fmax((white - 2.0 * half) / (white - half), 0.0), 1.0) : 0.0;
     *across = white > FAINT ? spread / white : 0.25;
 }
 
-static void store_lambertian(const lq_material *material, const lights *l, int colour, double back,
-                             double *numbers) {
+static void store_base(const lq_material *material, const lights *l, int colour, double back,
+                       double *numbers) {
     const double rho = material->stack->layers[material->stack->layer_count - 1].rho.value[colour];
     for (size_t m = 0; m < l->count; m++) {
         double *n = numbers + m * LQ_MATERIAL_NUMBERS;
-        const double through = (total(l, m, 2) - total(l, m, 0)) * (1.0 - back);
-        n[LQ_MATERIAL_TOP + colour] = lobe(l, m, 0, 0)->energy;
+        const double through = (total(l, m, colour, WHITE) - total(l, m, colour, DARK)) * (1.0 - back);
+        n[LQ_MATERIAL_TOP + colour] = lit(l, m, colour, DARK, 0)->energy;
         n[LQ_MATERIAL_THROUGH + colour] = material->open_rho ? through : through * rho / (1.0 - rho * back);
         n[LQ_MATERIAL_BACK + colour] = material->open_rho ? back : 0.0;
     }
 }
 
-/* A coat of one interface holds no light that did not meet the base. */
-static void add_dark(const lq_stack *stack, const lights *l, int colour, double *numbers, double *across) {
-    for (size_t m = 0; m < l->count && stack->layer_count > 2; m++)
-        add_inner(lobe(l, m, 0, 1), colour, numbers + m * LQ_MATERIAL_NUMBERS, &across[m]);
+/* What was inside and did not meet the base: a coat of one interface holds none. */
+static void store_dark(const lq_stack *stack, const lights *l, const lq_spread *spread, double *numbers) {
+    for (size_t m = 0; m < l->count; m++) {
+        double *n = numbers + m * LQ_MATERIAL_NUMBERS, across = 0.0;
+        for (int c = 0; c < LQ_MATERIAL_COLOURS && stack->layer_count > 2; c++)
+            add_inner(lit(l, m, c, DARK, 1), c, n, &across);
+        set_inner_alpha(spread, m, across, n);
+    }
 }
 
 /* Whether colours differ in anything but the base's albedo. */
@@ -229,33 +244,36 @@ static bool splits_colours(const lq_stack *stack) {
     return false;
 }
 
+/* All colours and albedos at once: their interfaces are the same, and solved once. */
+static lq_status solve_albedos(const lq_stack *stack, lights *l, lq_error *error) {
+    const size_t colours = splits_colours(stack) ? LQ_MATERIAL_COLOURS : 1;
+    lq_stack *split[LQ_MATERIAL_COLOURS] = {NULL};
+    lq_status status = LQ_OK;
+    for (size_t c = 0; c < colours && status == LQ_OK; c++) {
+        status = lq_stack_copy(&split[c], stack, error);
+        if (status == LQ_OK) split_albedo(split[c], stack, (int)c);
+    }
+    if (status == LQ_OK) status = solve((const lq_stack *const *)split, colours, l, error);
+    for (size_t c = 0; c < colours; c++) lq_stack_free(split[c]);
+    return status;
+}
+
 static lq_status solve_lambertian(const lq_material *material, const lq_stack *stack, lights *l,
                                   const lq_spread *spread, double *numbers, lq_error *error) {
-    const bool splits = splits_colours(stack);
-    double *across = calloc(l->count + 1, sizeof *across), leaving = 0.0, back = 0.0;
-    lq_stack *split = NULL;
-    lq_status status = across ? lq_stack_copy(&split, stack, error)
-                              : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", l->count);
-    for (int c = 0; c < LQ_MATERIAL_COLOURS && status == LQ_OK; c++) {
-        double of_base = leaving;
-        if (c == 0 || splits) {
-            split_albedo(split, stack, c);
-            status = solve(split, l, error);
-            if (status == LQ_OK) read_base(l, &back, &of_base);
-        }
-        if (status != LQ_OK) break;
-        leaving = c == 0 ? of_base : leaving + (of_base - leaving) / (c + 1);
-        store_lambertian(material, l, c, back, numbers);
-        add_dark(stack, l, c, numbers, across);
+    double leaving = 0.0;
+    const lq_status status = solve_albedos(stack, l, error);
+    if (status != LQ_OK) return status;
+    for (int c = 0; c < LQ_MATERIAL_COLOURS; c++) {
+        double back, across;
+        read_base(l, c, &back, &across);
+        store_base(material, l, c, back, numbers);
+        leaving += across / LQ_MATERIAL_COLOURS;
     }
-    for (size_t m = 0; m < l->count && status == LQ_OK; m++) {
-        set_inner_alpha(spread, m, across[m], numbers + m * LQ_MATERIAL_NUMBERS);
+    store_dark(stack, l, spread, numbers);
+    for (size_t m = 0; m < l->count; m++)
         numbers[m * LQ_MATERIAL_NUMBERS + LQ_MATERIAL_BASE_ALPHA] =
             lq_spread_alpha(spread, l->count, leaving);
-    }
-    lq_stack_free(split);
-    free(across);
-    return status;
+    return LQ_OK;
 }
 
 /* A bare Lambertian surface lets all light through to itself. */
@@ -275,7 +293,7 @@ lq_status lq_material_solve(const lq_material *material, const double *values, c
     lights l = {.mu = mu, .count = count, .level = level, .tolerance = tolerance};
     lq_stack *stack = NULL;
     lq_status status = lq_stack_copy(&stack, material->stack, error);
-    l.light = malloc((count + 1) * 2 * LQ_MATERIAL_COLOURS * sizeof *l.light);
+    l.light = malloc((count + 1) * 2 * LQ_MATERIAL_COLOURS * ALBEDOS * sizeof *l.light);
     if (status == LQ_OK && !l.light)
         status = lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
     memset(numbers, 0, count * LQ_MATERIAL_NUMBERS * sizeof *numbers);

@@ -46,11 +46,19 @@ static bool alike(const lq_plan_surface *a, const lq_plan_surface *b) {
            a->spec.diffuse == b->spec.diffuse && a->axis[0] == b->axis[0] && a->axis[1] == b->axis[1];
 }
 
-/* The material of a base among those its surface has. */
-static int find_material(lq_surface *all, const lq_surface *one) {
+/* The material of a base among those its surface has; their number where it is none of them. */
+static int seek_material(const lq_surface *all, const lq_surface *one) {
     int m = 0;
-    for (; m < all->materials; m++)
-        if (all->n[m] == one->n[0] && all->kappa[m] == one->kappa[0] && all->rho[m] == one->rho[0]) return m;
+    while (m < all->materials &&
+           !(all->n[m] == one->n[0] && all->kappa[m] == one->kappa[0] && all->rho[m] == one->rho[0]))
+        m++;
+    return m;
+}
+
+/* The same, added where it is new. */
+static int find_material(lq_surface *all, const lq_surface *one) {
+    const int m = seek_material(all, one);
+    if (m < all->materials) return m;
     all->n[m] = one->n[0];
     all->kappa[m] = one->kappa[0];
     all->rho[m] = one->rho[0];
@@ -58,9 +66,14 @@ static int find_material(lq_surface *all, const lq_surface *one) {
     return m;
 }
 
+/* A surface has room for as many bases as there are channels. */
+static bool serves(const lq_plan_surface *a, const lq_plan_surface *b) {
+    return alike(a, b) && (!a->spec.opaque || seek_material(&a->spec, &b->spec) < LQ_STACK_CHANNELS);
+}
+
 static lq_plan_step find_surface(lq_plan *plan, const lq_plan_surface *surface) {
     size_t i = 0;
-    while (i < plan->surface_count && !alike(&plan->surface[i], surface)) i++;
+    while (i < plan->surface_count && !serves(&plan->surface[i], surface)) i++;
     if (i == plan->surface_count) plan->surface[plan->surface_count++] = *surface;
     lq_plan_step step = {.surface = i};
     if (surface->spec.opaque) step.material = find_material(&plan->surface[i].spec, &surface->spec);
@@ -167,9 +180,8 @@ static size_t medium_axis(lq_plan *plan, const lq_plan_chain *chain, const lq_me
     return find_axis(plan, &axis);
 }
 
-static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, bool from_below,
-                            lq_scattering scattering, lq_error *error) {
-    lq_plan_chain *chain = &plan->chain[channel];
+static lq_status make_chain(lq_plan *plan, lq_plan_chain *chain, const lq_stack *stack, int channel,
+                            bool from_below, lq_scattering scattering, lq_error *error) {
     const size_t layers = stack->layer_count;
     lq_media media;
     const bool known = media_make(&media, stack, channel);
@@ -194,18 +206,27 @@ static lq_status make_chain(lq_plan *plan, const lq_stack *stack, int channel, b
     return LQ_OK;
 }
 
-lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
-                       lq_error *error) {
-    *plan = (lq_plan){.channels = lq_stack_channels(stack)};
+lq_status lq_plan_make(lq_plan *plan, const lq_stack *const *stacks, size_t count, bool from_below,
+                       lq_scattering scattering, lq_error *error) {
+    *plan = (lq_plan){0};
     lq_status status = LQ_OK;
-    const size_t most = (stack->layer_count + 1) * (size_t)plan->channels;
-    plan->surface = calloc(most, sizeof *plan->surface);
-    plan->axis = calloc(most, sizeof *plan->axis);
-    plan->ndf = calloc(most, sizeof *plan->ndf);
-    if (!plan->surface || !plan->axis || !plan->ndf)
-        status = lq_fail(error, LQ_NO_MEMORY, "no memory for a stack of %zu layers", stack->layer_count);
-    for (int c = 0; c < plan->channels && status == LQ_OK; c++)
-        status = make_chain(plan, stack, c, from_below, scattering, error);
+    size_t most = 0;
+    int chains = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int channels = lq_stack_channels(stacks[i]);
+        most += (stacks[i]->layer_count + 1) * (size_t)channels;
+        chains += channels;
+    }
+    plan->chain = calloc((size_t)chains + 1, sizeof *plan->chain);
+    plan->surface = calloc(most + 1, sizeof *plan->surface);
+    plan->axis = calloc(most + 1, sizeof *plan->axis);
+    plan->ndf = calloc(most + 1, sizeof *plan->ndf);
+    if (!plan->chain || !plan->surface || !plan->axis || !plan->ndf)
+        status = lq_fail(error, LQ_NO_MEMORY, "no memory for %zu interfaces", most);
+    for (size_t i = 0; i < count && status == LQ_OK; i++)
+        for (int c = 0; c < lq_stack_channels(stacks[i]) && status == LQ_OK; c++)
+            status =
+                make_chain(plan, &plan->chain[plan->channels++], stacks[i], c, from_below, scattering, error);
     if (status != LQ_OK) lq_plan_free(plan);
     return status;
 }
@@ -216,6 +237,7 @@ void lq_plan_free(lq_plan *plan) {
         free(plan->chain[c].medium);
     }
     for (size_t i = 0; i < plan->ndf_count; i++) lq_ndf_close(plan->ndf[i]);
+    free(plan->chain);
     free(plan->surface);
     free(plan->axis);
     free(plan->ndf);

@@ -37,17 +37,17 @@ typedef struct lq_plan_chain {
 } lq_plan_chain;
 
 typedef struct lq_plan {
-    int channels;
-    lq_plan_chain chain[LQ_STACK_CHANNELS];
+    int channels;         /* of all stacks */
+    lq_plan_chain *chain; /* of each channel, those of a later stack behind those of the ones before */
     size_t surface_count, axis_count, ndf_count;
     lq_plan_surface *surface;
     lq_plan_axis *axis;
     const lq_ndf **ndf; /* opened */
 } lq_plan;
 
-/* Of a stack that lq_stack_solvable accepts. Free it on LQ_OK. */
-lq_status lq_plan_make(lq_plan *plan, const lq_stack *stack, bool from_below, lq_scattering scattering,
-                       lq_error *error);
+/* Of stacks that lq_stack_solvable accepts: what they have in common is solved once. Free it on LQ_OK. */
+lq_status lq_plan_make(lq_plan *plan, const lq_stack *const *stacks, size_t count, bool from_below,
+                       lq_scattering scattering, lq_error *error);
 void lq_plan_free(lq_plan *plan);
 
 #endif

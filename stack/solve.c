@@ -53,13 +53,16 @@ static lq_status refine(const lq_plan *plan, const lq_stack_query *query, double
                    tolerance);
 }
 
-lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
-                         const lq_progress *progress, lq_error *error) {
+lq_status lq_stack_solve_list(const lq_stack *const *stacks, size_t stack_count, const lq_stack_query *query,
+                              lq_stack_light *light, const lq_progress *progress, lq_error *error) {
     const double tolerance = lq_stack_tolerance(query);
     lq_plan plan;
-    lq_status status = lq_stack_solvable(stack, query, error);
-    if (status != LQ_OK) return status;
-    status = lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
+    lq_status status = LQ_OK;
+    for (size_t i = 0; i < stack_count && status == LQ_OK; i++)
+        status = lq_stack_solvable(stacks[i], query, error);
+    if (status == LQ_OK)
+        status = lq_plan_make(&plan, stacks, stack_count, query->from_below,
+                              query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
     if (status != LQ_OK) return status;
     const size_t count = query->mu_count * (size_t)plan.channels * (query->paths ? query->paths : 1);
     lq_stack_light *now = malloc((count + 1) * sizeof *now);
@@ -69,6 +72,11 @@ lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_
     free(now);
     lq_plan_free(&plan);
     return status;
+}
+
+lq_status lq_stack_solve(const lq_stack *stack, const lq_stack_query *query, lq_stack_light *light,
+                         const lq_progress *progress, lq_error *error) {
+    return lq_stack_solve_list(&stack, 1, query, light, progress, error);
 }
 
 /* The fewest paths after which no more than `least` is left, of one cosine and channel. */
@@ -88,7 +96,7 @@ lq_status lq_stack_count_paths(const lq_stack *stack, const lq_stack_query *quer
     lq_status status = lq_stack_solvable(stack, query, error);
     if (status == LQ_OK)
         status =
-            lq_plan_make(&plan, stack, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
+            lq_plan_make(&plan, &stack, 1, query->from_below, query->single ? LQ_SINGLE : LQ_MULTIPLE, error);
     if (status != LQ_OK) return status;
     every.paths = LQ_STACK_PATHS_MAX;
     const size_t lines = query->mu_count * (size_t)plan.channels;

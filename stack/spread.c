@@ -6,7 +6,7 @@
 
 #include "system/status.h"
 
-enum { RINGS = 40, SECTORS = 32, ALPHAS = 65 };
+enum { RINGS = 32, SECTORS = 24, ALPHAS = 33 };
 
 static double alpha_of(size_t i) {
     const double root = (double)i / (ALPHAS - 1);

@@ -13,7 +13,7 @@ static const lq_lobes_budget DEFAULT = {2e-3, 1e-2};
 
 /* The share of a budget that a bake may be off by at its coarser nodes; that of the finer ones is far less.
  */
-static const double BAKED = 0.5;
+static const double BAKED = 2.0;
 
 enum { POINTS_PER_SET = 500, FEWEST_SETS = 4, MOST_SETS = 64, CHECK_LEVEL = 1 };
 
