@@ -135,6 +135,10 @@ static void say_top_alpha(FILE *out, lq_language language, const lq_material *m)
 
 static void say_fetches(FILE *out, lq_language language, const lq_lobes *lobes, const lq_tile *tiles) {
     const lq_material *m = lobes->material;
+    if (lobes->channel_count == 0) {
+        if (language == LQ_C) fputs("    (void)atlas;\n    (void)mu;\n", out);
+        return;
+    }
     for (int a = 0; a < lobes->axis_count; a++) {
         lq_say(out, language, "    $=1 %c = ", "uvw"[a]);
         lq_say_coordinate(out, language, &lobes->axes[a], lobes->axes[a].name);
@@ -158,7 +162,8 @@ static void say_material(FILE *out, lq_language language, const lq_atlas_materia
     lq_check checks[2 + LQ_MATERIAL_RANGES] = {{"mu", 0.0, 1.0}};
     char head[512], text[LQ_LITERAL_SIZE];
     int used = snprintf(head, sizeof head, "$(L lacquer_%s|A|1 mu", material->name);
-    fprintf(out, "\n/* %s: %zu fetches.", material->name, lq_atlas_material_fetches(material));
+    const size_t fetches = lq_atlas_material_fetches(material);
+    fprintf(out, "\n/* %s: %zu fetch%s.", material->name, fetches, fetches == 1 ? "" : "es");
     for (int r = 0; r < m->range_count; r++) {
         const lq_material_range *range = &m->ranges[r];
         fprintf(out, "\n *   %s: layer %s, %g to %g", range->name, range->path, range->min, range->max);
