@@ -18,10 +18,10 @@ install(FILES ${PROJECT_BINARY_DIR}/lacquer-config.cmake
 # A static library is the only one there is to link, so what it needs must show without --static.
 set(pc_needs "-lOpenEXRCore ${OpenMP_C_FLAGS} -lm")
 if(BUILD_SHARED_LIBS)
-  set(pc_requires "Requires.private: jansson zlib libzstd lapacke openblas")
+  set(pc_requires "Requires.private: jansson zlib libzstd lapacke openblas cairo")
   set(pc_libs "Libs: -L\${libdir} -llacquer\nLibs.private: ${pc_needs}")
 else()
-  set(pc_requires "Requires: jansson zlib libzstd lapacke openblas")
+  set(pc_requires "Requires: jansson zlib libzstd lapacke openblas cairo")
   set(pc_libs "Libs: -L\${libdir} -llacquer ${pc_needs}")
 endif()
 file(RELATIVE_PATH pc_to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")

@@ -113,19 +113,11 @@ typedef struct info_request {
 
 static const char *const formats[] = {"text", "json", NULL};
 
-static bool read_layout(void *field, const char *value) {
-    const char *layouts[LQ_LAYOUTS];
-    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
-    const int choice = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS);
-    if (choice >= 0) *(int *)field = choice;
-    return choice >= 0;
-}
-
 static const cli_option options[] = {
     {OPTION_FORMAT, "format", "text|json", "how to print (default text)",
      CLI_CHOICE(info_request, format, formats)},
     {OPTION_LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "FILE is a published binary table",
-     CLI_READ(info_request, layout, read_layout)},
+     CLI_READ(info_request, layout, cli_read_layout)},
     {OPTION_KIND, "kind", "TABLE", "which table that file holds; it does not say itself",
      CLI_TEXT(info_request, kind), .modes = PUBLISHED},
     {OPTION_NDF, "ndf", "NDF", "which NDF it was made for, where it is not the one of the layout",

@@ -255,6 +255,14 @@ int cli_parse_choice(const char *what, const char *text, const char *const *choi
     return -1;
 }
 
+bool cli_read_layout(void *field, const char *value) {
+    const char *layouts[LQ_LAYOUTS];
+    for (int i = 0; i < LQ_LAYOUTS; i++) layouts[i] = lq_layout_name((lq_layout)i);
+    const int choice = cli_parse_choice("--layout", value, layouts, LQ_LAYOUTS);
+    if (choice >= 0) *(int *)field = choice;
+    return choice >= 0;
+}
+
 /* ======================================================================================
  *                                         Help
  * ====================================================================================== */

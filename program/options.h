@@ -39,6 +39,9 @@ bool cli_parse_count(const char *what, const char *text, size_t lowest, size_t h
 /* The index of `text` among `count` choices, or -1 (a line was printed). */
 int cli_parse_choice(const char *what, const char *text, const char *const *choices, size_t count);
 
+/* --layout: the number of a published layout into an int. */
+bool cli_read_layout(void *field, const char *value);
+
 /* Print the help of a verb to stdout. */
 void cli_print_help(const cli_verb *verb);
 

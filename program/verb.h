@@ -115,6 +115,7 @@ extern const cli_verb cli_verb_info;
 extern const cli_verb cli_verb_fit;
 extern const cli_verb cli_verb_bench;
 extern const cli_verb cli_verb_stack;
+extern const cli_verb cli_verb_view;
 
 /* All verbs in the order help shows them; NULL beyond the last. */
 const cli_verb *cli_verb_at(size_t i);

@@ -4,8 +4,8 @@
 #include <string.h>
 
 static const cli_verb *const verbs[] = {
-    &cli_verb_list, &cli_verb_eval,     &cli_verb_stack, &cli_verb_precompute, &cli_verb_pca,
-    &cli_verb_fit,  &cli_verb_validate, &cli_verb_pack,  &cli_verb_info,       &cli_verb_bench,
+    &cli_verb_list,     &cli_verb_eval, &cli_verb_stack, &cli_verb_precompute, &cli_verb_pca,   &cli_verb_fit,
+    &cli_verb_validate, &cli_verb_pack, &cli_verb_info,  &cli_verb_view,       &cli_verb_bench,
 };
 
 const cli_verb *cli_verb_at(size_t i) {

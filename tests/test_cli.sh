@@ -65,7 +65,7 @@ done
 
 # --------------------------------------------------------------------------------- bad words
 refused 'no verb; known: list, eval'
-refused "unknown verb 'x'; known: list, eval, stack, precompute, pca, fit, validate, pack, info, bench" x
+refused "unknown verb 'x'; known: list, eval, stack, precompute, pca, fit, validate, pack, info, view, bench" x
 refused "unknown option '--x'" --x
 for verb in $verbs; do
     refused "unknown option '--nonsense'; accepted: .*--help" "$verb" --nonsense

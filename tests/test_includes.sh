@@ -8,13 +8,14 @@ declare -A may=(
     [system]=""
     [microfacet]="system"
     [tables]="system microfacet"
+    [picture]="system tables"
     [precompute]="system microfacet tables"
     [pca]="system tables"
     [fit]="system microfacet tables"
     [stack]="system microfacet tables precompute fit"
-    [pack]="system microfacet tables precompute pca fit stack"
-    [validate]="system microfacet tables precompute pca fit stack pack"
-    [program]="system microfacet tables precompute pca fit stack pack validate"
+    [pack]="system microfacet tables picture precompute pca fit stack"
+    [validate]="system microfacet tables picture precompute pca fit stack pack"
+    [program]="system microfacet tables picture precompute pca fit stack pack validate"
 )
 failed=0
 

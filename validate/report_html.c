@@ -1,11 +1,11 @@
 /* The page of a certificate: one file that needs no other, readable without scripts. */
 #include "validate/report.h"
 
+#include "picture/text.h"
 #include "system/output.h"
 #include "system/status.h"
 #include "validate/report_maps.h"
 #include "validate/report_ranks.h"
-#include "validate/report_text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -27,14 +27,6 @@ static const char style[] =
     ".passed{color:#35b78f}.failed{color:#f0824f}.noted{color:#b3b2ab}.ink{fill:#f4f3ef}.soft{fill:#b3b2ab}}"
     "\n";
 
-static void put_text(FILE *out, const char *text) {
-    char code[LQ_REPORT_CODE_SIZE];
-    while (*text) {
-        text += lq_report_character(text, code);
-        fputs(code, out);
-    }
-}
-
 static const char *word(lq_outcome outcome) {
     return outcome == LQ_PASSED ? "passed" : outcome == LQ_FAILED ? "failed" : "noted";
 }
@@ -49,7 +41,7 @@ static void put_summary(FILE *out, const lq_certified *list, size_t count) {
         const lq_certificate *c = &list[i].certificate;
         const lq_check *failed = lq_certified_failure(&list[i]);
         fprintf(out, "<tr><td><a href=\"#t%zu\">", i);
-        put_text(out, list[i].subject.name);
+        lq_text_put(out, list[i].subject.name);
         fprintf(out,
                 "</a></td><td class=\"text\">%s</td><td>%.2e</td><td>%.2e</td><td>%.2e</td><td>%zu</td>"
                 "<td class=\"%s\">%s%s</td></tr>\n",
@@ -98,7 +90,7 @@ static void put_checks(FILE *out, const lq_certified *certified) {
         if (isnan(check->limit)) fputs("<td></td>", out);
         else fprintf(out, "<td>%.2e</td>", check->limit);
         fputs("<td class=\"text\">", out);
-        put_text(out, check->detail);
+        lq_text_put(out, check->detail);
         fputs("</td></tr>\n", out);
     }
     fputs("</table>\n", out);
@@ -144,9 +136,9 @@ static lq_status put_one(FILE *out, const lq_certified *certified, size_t number
     lq_origin_describe(c->request.kind, &certified->subject.origin.settings, what, sizeof what);
     lq_point_text(c->request.kind, c->found.at, at, sizeof at);
     fprintf(out, "<h2 id=\"t%zu\">", number);
-    put_text(out, certified->subject.name);
+    lq_text_put(out, certified->subject.name);
     fprintf(out, "</h2>\n<p>%s: ", c->request.kind->title);
-    put_text(out, what);
+    lq_text_put(out, what);
     fputs(". Domain", out);
     for (int a = 0; a < c->request.kind->axis_count; a++)
         fprintf(out, "%s %s %g to %g", a ? "," : "", c->request.kind->axes[a].name, c->request.domain.min[a],

@@ -1,17 +1,17 @@
 /* Certificates as JUnit XML, which build servers read: a table is a suite, a judgement a case. */
 #include "validate/report.h"
 
+#include "picture/text.h"
 #include "system/output.h"
-#include "validate/report_text.h"
 
 #include <math.h>
 
 /* Text of an attribute or element. */
 static lq_status put_text(lq_output *out, const char *text, lq_error *error) {
     lq_status status = LQ_OK;
-    char code[LQ_REPORT_CODE_SIZE];
+    char code[LQ_TEXT_CODE_SIZE];
     while (status == LQ_OK && *text) {
-        text += lq_report_character(text, code);
+        text += lq_text_character(text, code);
         status = lq_output_print(out, error, "%s", code);
     }
     return status;

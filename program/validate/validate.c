@@ -69,14 +69,6 @@ static bool read_against(void *field, const char *text) {
     return false;
 }
 
-static bool read_layout(void *field, const char *text) {
-    const char *names[LQ_LAYOUTS];
-    for (int i = 0; i < LQ_LAYOUTS; i++) names[i] = lq_layout_name((lq_layout)i);
-    const int choice = cli_parse_choice("--layout", text, names, LQ_LAYOUTS);
-    if (choice >= 0) *(int *)field = choice;
-    return choice >= 0;
-}
-
 static bool read_budget(void *field, const char *value) {
     validate_request *request = field;
     if (strchr(value, '=') || !cli_number(value, &request->budget))
@@ -95,7 +87,7 @@ static const cli_option options[] = {
      "the solver; random walks as well; another table, EXR or published (default exact)",
      .type = CLI_TYPE_READ, .read = read_against, .modes = OWN | WALKED | OTHERS | PUBLISHED},
     {LAYOUT, "layout", "belcour|tm|mitsuba|mitsuba-inside", "OTHER, or FILE alone, is a published table",
-     CLI_READ(validate_request, layout, read_layout), .modes = OTHERS | PUBLISHED},
+     CLI_READ(validate_request, layout, cli_read_layout), .modes = OTHERS | PUBLISHED},
     {KIND, "kind", "TABLE", "which table that file holds; it does not say itself",
      CLI_TEXT(validate_request, kind), .modes = OTHERS | PUBLISHED},
     {AXES, "axes", "AXES.json", "FILE is a .npy, EXR or C array of anybody's, described there",

@@ -1,8 +1,9 @@
-/* report_text.c - one character of a report at a time. */
-#include "validate/report_text.h"
+/* text.c - UTF-8 and markup, a character at a time. */
+#include "picture/text.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The code point that `text` begins with and its length in bytes; length 0 where it is no UTF-8 (RFC 3629):
@@ -41,17 +42,44 @@ static const char *escape(uint32_t point) {
     }
 }
 
-size_t lq_report_character(const char *text, char code[LQ_REPORT_CODE_SIZE]) {
+/* The same without markup. */
+static size_t take(const char *text, uint32_t *point, char code[LQ_TEXT_CODE_SIZE]) {
     static const char replaced[] = "\xef\xbf\xbd";
-    uint32_t point = 0;
-    const size_t length = decode(text, &point);
-    const bool held = length > 0 && point >= ' ' && point != 0x7f && point != 0xfffe && point != 0xffff;
-    const char *escaped = escape(point);
-    if (!held) strcpy(code, replaced);
-    else if (escaped) strcpy(code, escaped);
+    const size_t length = decode(text, point);
+    const bool held = length > 0 && *point >= ' ' && *point != 0x7f && *point != 0xfffe && *point != 0xffff;
+    if (held) memcpy(code, text, length);
     else {
-        memcpy(code, text, length);
-        code[length] = '\0';
+        strcpy(code, replaced);
+        *point = 0xfffd;
     }
+    if (held) code[length] = '\0';
     return length > 0 ? length : 1;
+}
+
+size_t lq_text_character(const char *text, char code[LQ_TEXT_CODE_SIZE]) {
+    uint32_t point = 0;
+    const size_t length = take(text, &point, code);
+    const char *escaped = escape(point);
+    if (escaped) strcpy(code, escaped);
+    return length;
+}
+
+char *lq_text_clean(const char *text) {
+    char *clean = malloc(3 * strlen(text) + 1), *end = clean, code[LQ_TEXT_CODE_SIZE];
+    if (!clean) return NULL;
+    *end = '\0';
+    for (uint32_t point; *text; end += strlen(end)) {
+        point = 0;
+        text += take(text, &point, code);
+        strcpy(end, code);
+    }
+    return clean;
+}
+
+void lq_text_put(FILE *out, const char *text) {
+    char code[LQ_TEXT_CODE_SIZE];
+    while (*text) {
+        text += lq_text_character(text, code);
+        fputs(code, out);
+    }
 }

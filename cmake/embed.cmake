@@ -1,0 +1,5 @@
+# Script: turns a text file into a C array, so that sources in other languages stay files of their own.
+#     cmake -DFROM=page.js -DTO=page_js.c -DNAME=lq_page_script -P embed.cmake
+file(READ "${FROM}" bytes HEX)
+string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+file(WRITE "${TO}" "#include \"picture/page_parts.h\"\nconst char ${NAME}[] = {${bytes}0};\n")

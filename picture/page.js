@@ -1,0 +1,509 @@
+// Draws a page of `lacquer view`: a table to be cut along any two axes, and panels of maps, curves and areas.
+// Everything comes from the JSON of the page's element "data"; picture/page.c says what is in it.
+'use strict';
+(() => {
+const data = JSON.parse(document.getElementById('data').textContent);
+const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
+const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const figure = v => Number.isFinite(v) ? String(+v.toPrecision(6)) : 'no number';
+
+function element(tag, attributes = {}, ...children) {
+    const made = Object.assign(document.createElement(tag), attributes);
+    made.append(...children);
+    return made;
+}
+
+// ------------------------------------------------------------------------------- numbers
+
+function floats(base64) {
+    const text = atob(base64), bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+    const view = new DataView(bytes.buffer), values = new Float32Array(bytes.length / 4);
+    for (let i = 0; i < values.length; i++) values[i] = view.getFloat32(4 * i, true);
+    return values;
+}
+
+// An axis is drawn in its own map: u in [0,1]. Nodes are evenly spaced in it, unless some were left out.
+const whereIs = (axis, i) => axis.at ? axis.at[i] : axis.nodes.length > 1 ? i / (axis.nodes.length - 1) : 0;
+
+// The fractional number of the node at u.
+function nodeAt(axis, u) {
+    const last = axis.nodes.length - 1;
+    if (!axis.at) return u * last;
+    let i = 0;
+    while (i < last - 1 && axis.at[i + 1] <= u) i++;
+    return i + clamp((u - axis.at[i]) / (axis.at[i + 1] - axis.at[i]), 0, 1);
+}
+
+function valueAt(axis, u) {
+    const last = axis.nodes.length - 1, low = axis.nodes[0], high = axis.nodes[last];
+    if (last === 0) return low;
+    if (axis.exponent > 0) return low + (high - low) * u ** axis.exponent;
+    const at = nodeAt(axis, u), i = Math.min(Math.floor(at), last - 1);
+    return axis.nodes[i] + (axis.nodes[i + 1] - axis.nodes[i]) * (at - i);
+}
+
+function placeOf(axis, value) {
+    const last = axis.nodes.length - 1, low = axis.nodes[0], high = axis.nodes[last];
+    if (last === 0) return 0;
+    if (axis.exponent > 0) return clamp((value - low) / (high - low), 0, 1) ** (1 / axis.exponent);
+    let i = 0;
+    while (i < last - 1 && axis.nodes[i + 1] <= value) i++;
+    const f = clamp((value - axis.nodes[i]) / (axis.nodes[i + 1] - axis.nodes[i]), 0, 1);
+    return whereIs(axis, i) + (whereIs(axis, i + 1) - whereIs(axis, i)) * f;
+}
+
+const linear = (low, high) => ({ nodes: [low, high], exponent: 1, size: 2 });
+
+// Round values at least `gap` apart, by the rules of picture/ticks.c.
+function ticks(axis, gap) {
+    const low = axis.nodes[0], high = axis.nodes[axis.nodes.length - 1], even = axis.exponent === 1;
+    if (axis.nodes.length < 2) return [{ value: low, at: 0, text: figure(low) }];
+    gap = Math.max(gap, 1 / 30);
+    const start = 10 ** Math.ceil(Math.log10(high - low));
+    let list = [];
+    const near = at => list.reduce((least, t) => Math.min(least, Math.abs(t.at - at)), Infinity);
+    const interval = at => list.filter(t => t.at < at).length;
+    for (let s = 0; s < 12; s++) {
+        const step = start * [1, 0.5, 0.2][s % 3] * 10 ** -Math.floor(s / 3);
+        const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
+        const all = [];
+        for (let k = first; k <= last && all.length < 32768; k++)
+            all.push({ value: k * step, at: placeOf(axis, k * step), text: figure(k * step) });
+        if (all.every((t, i) => i === 0 || t.at - all[i - 1].at >= gap)) {
+            list = all;
+            continue;
+        }
+        const full = new Set();
+        all.forEach((t, i) => {
+            const room = near(t.at);
+            if (room >= 1e-9 && (room < gap || i > 0 && t.at - all[i - 1].at < gap)) full.add(interval(t.at));
+        });
+        const added = [];
+        for (const t of all) {
+            const last = added.length ? t.at - added[added.length - 1].at : Infinity;
+            if (near(t.at) >= gap && last >= gap && (even ? !full.has(interval(t.at)) : t.value - low <= 10 * step)) added.push(t);
+        }
+        list = list.concat(added).sort((a, b) => a.at - b.at);
+    }
+    return list;
+}
+
+// The ends of a scale, as picture/figure.c sets them.
+function rangeOf(values) {
+    let low = Infinity, high = -Infinity;
+    for (const v of values) if (Number.isFinite(v)) low = Math.min(low, v), high = Math.max(high, v);
+    if (!(low <= high)) low = 0, high = 1;
+    const signed = low < 0 && high > 0;
+    if (signed) high = Math.max(high, -low), low = -high;
+    const least = Math.max(1e-6 * Math.max(Math.abs(low), Math.abs(high)), 1e-30);
+    if (high - low < least) low -= least / 2, high += least / 2;
+    return { low, high, signed };
+}
+
+// ------------------------------------------------------------------------------- colours
+
+const steps = hex => Array.from({ length: hex.length / 6 }, (_, i) =>
+    [0, 2, 4].map(k => parseInt(hex.slice(6 * i + k, 6 * i + k + 2), 16)));
+const maps = { value: steps(data.colours.value), signed: steps(data.colours.signed), bad: steps(data.colours.bad)[0] };
+
+function colour(scale, v) {
+    if (!Number.isFinite(v)) return maps.bad;
+    return maps[scale.signed ? 'signed' : 'value'][Math.round(255 * clamp((v - scale.low) / (scale.high - scale.low), 0, 1))];
+}
+
+function seriesColour(panel, i) {
+    const count = panel.series.length - (panel.reference ? 1 : 0), dark = matchMedia('(prefers-color-scheme: dark)').matches;
+    if (i === count) return css('--axis');
+    if (!panel.ordered && count <= 4) return css('--hue' + i);
+    const from = dark ? 0.38 : 0.25, t = from + (dark ? 0.57 : 0.6) * i / Math.max(count - 1, 1);
+    return `rgb(${maps.value[Math.round(255 * t)]})`;
+}
+
+// ------------------------------------------------------------------------------- drawing
+
+// A canvas as wide as its place, and the plot inside it, in px.
+function begin(canvas, ratio, right) {
+    const scale = window.devicePixelRatio || 1, width = Math.max(canvas.clientWidth, 200);
+    const plot = { x: 60, y: 12, width: width - 60 - right, height: 0 };
+    plot.height = Math.round(plot.width * ratio);
+    const height = plot.height + 56;
+    canvas.width = Math.round(width * scale);
+    canvas.height = Math.round(height * scale);
+    canvas.style.height = height + 'px';
+    const c = canvas.getContext('2d');
+    c.setTransform(scale, 0, 0, scale, 0, 0);
+    c.clearRect(0, 0, width, height);
+    c.font = '12px system-ui, sans-serif';
+    return { c, plot, scale };
+}
+
+function text(c, words, x, y, align, ink) {
+    c.textAlign = align;
+    c.fillStyle = css(ink);
+    c.fillText(words, x, y);
+}
+
+function line(c, ...points) {
+    c.beginPath();
+    for (let i = 0; i < points.length; i += 2) c.lineTo(points[i], points[i + 1]);
+    c.stroke();
+}
+
+function frame(c, p) {
+    c.strokeStyle = css('--axis');
+    c.lineWidth = 1;
+    c.strokeRect(p.x - 0.5, p.y - 0.5, p.width + 1, p.height + 1);
+}
+
+const axisName = axis => axis.name + ' (' + axis.size + ' nodes' + (axis.map ? ', ' + axis.map : '') + ')';
+
+function xAxis(c, p, axis) {
+    const bottom = p.y + p.height + 1;
+    c.strokeStyle = css('--axis');
+    if (p.width / axis.nodes.length >= 3)
+        axis.nodes.forEach((_, i) => line(c, p.x + p.width * whereIs(axis, i), bottom, p.x + p.width * whereIs(axis, i), bottom + 2.5));
+    for (const t of ticks(axis, 40 / p.width)) {
+        line(c, p.x + p.width * t.at, bottom, p.x + p.width * t.at, bottom + 6);
+        text(c, t.text, p.x + p.width * t.at, bottom + 19, 'center', '--soft');
+    }
+    text(c, axisName(axis), p.x + p.width / 2, bottom + 37, 'center', '--ink');
+}
+
+function yLabel(c, p, words) {
+    c.save();
+    c.translate(10, p.y + p.height / 2);
+    c.rotate(-Math.PI / 2);
+    text(c, words, 0, 0, 'center', '--ink');
+    c.restore();
+}
+
+function yAxis(c, p, axis) {
+    c.strokeStyle = css('--axis');
+    if (p.height / axis.nodes.length >= 3)
+        axis.nodes.forEach((_, i) => line(c, p.x - 1, p.y + p.height * (1 - whereIs(axis, i)), p.x - 3.5, p.y + p.height * (1 - whereIs(axis, i))));
+    for (const t of ticks(axis, 24 / p.height)) {
+        const y = p.y + p.height * (1 - t.at);
+        line(c, p.x - 1, y, p.x - 7, y);
+        text(c, t.text, p.x - 10, y + 4, 'right', '--soft');
+    }
+    yLabel(c, p, axisName(axis));
+}
+
+function bar(c, p, scale) {
+    const x = p.x + p.width + 12, rows = Math.round(p.height);
+    for (let i = 0; i < rows; i++) {
+        c.fillStyle = `rgb(${colour(scale, scale.high + (scale.low - scale.high) * i / (rows - 1))})`;
+        c.fillRect(x, p.y + i, 12, 1);
+    }
+    frame(c, { x, y: p.y, width: 12, height: p.height });
+    for (const t of ticks(linear(scale.low, scale.high), 30 / p.height)) {
+        const y = p.y + p.height * (1 - t.at);
+        line(c, x + 13, y, x + 17, y);
+        text(c, t.text, x + 20, y + 4, 'left', '--soft');
+    }
+}
+
+// Two nodes and the share of the second.
+function between(axis, u) {
+    const last = axis.nodes.length - 1;
+    if (last === 0) return [0, 0, 0];
+    const at = nodeAt(axis, u), low = Math.min(Math.floor(at), last - 1);
+    return [low, low + 1, at - low];
+}
+const mix = (a, b, f) => f === 0 ? a : f === 1 ? b : a + (b - a) * f;
+
+function mapValue(map, u, v) {
+    const [x0, x1, fx] = between(map.x, u), [y0, y1, fy] = between(map.y, v), w = map.x.nodes.length;
+    return mix(mix(map.values[y0 * w + x0], map.values[y0 * w + x1], fx),
+               mix(map.values[y1 * w + x0], map.values[y1 * w + x1], fx), fy);
+}
+
+function drawMap(canvas, map, ratio) {
+    const { c, plot: p, scale } = begin(canvas, ratio, 76);
+    const left = Math.round(p.x * scale), top = Math.round(p.y * scale);
+    const width = Math.round(p.width * scale), height = Math.round(p.height * scale);
+    const image = c.createImageData(width, height), columns = [], w = map.x.nodes.length;
+    for (let i = 0; i < width; i++) columns.push(between(map.x, i / (width - 1)));
+    for (let j = 0, k = 0; j < height; j++) {
+        const [y0, y1, fy] = between(map.y, 1 - j / (height - 1));
+        for (const [x0, x1, fx] of columns) {
+            const rgb = colour(map, mix(mix(map.values[y0 * w + x0], map.values[y0 * w + x1], fx),
+                                        mix(map.values[y1 * w + x0], map.values[y1 * w + x1], fx), fy));
+            image.data[k++] = rgb[0], image.data[k++] = rgb[1], image.data[k++] = rgb[2], image.data[k++] = 255;
+        }
+    }
+    c.putImageData(image, left, top);
+    frame(c, p);
+    xAxis(c, p, map.x);
+    yAxis(c, p, map.y);
+    bar(c, p, map);
+    return p;
+}
+
+// Sums of the series below number `s` at node `i`.
+const below = (panel, s, i) => {
+    let sum = 0;
+    for (let k = 0; k < s; k++) sum += panel.values[k * panel.x.nodes.length + i];
+    return sum;
+};
+
+function drawSeries(c, panel, p, s, x, y) {
+    const n = panel.x.nodes.length, last = panel.reference && s === panel.series.length - 1;
+    c.strokeStyle = c.fillStyle = seriesColour(panel, s);
+    c.lineWidth = 2;
+    c.setLineDash(last ? [5, 4] : []);
+    c.beginPath();
+    if (panel.form === 'areas') {
+        for (let i = 0; i < n; i++) c.lineTo(x(i), y(below(panel, s, i)));
+        for (let i = n - 1; i >= 0; i--) c.lineTo(x(i), y(below(panel, s + 1, i)));
+        c.fill();
+    } else {
+        for (let i = 0, drawn = false; i < n; i++) {
+            const v = panel.values[s * n + i];
+            if (!Number.isFinite(v)) drawn = false;
+            else c[drawn ? 'lineTo' : 'moveTo'](x(i), y(v)), drawn = true;
+        }
+        c.stroke();
+    }
+    c.setLineDash([]);
+}
+
+function names(c, panel, p) {
+    const count = panel.series.length, every = Math.ceil(count / Math.max(1, Math.floor(p.height / 18)));
+    let y = p.y + 10;
+    for (let k = 0; count > 1 && k < count; k++) {
+        const i = panel.form === 'areas' ? count - 1 - k : k;
+        if (i % every) continue;
+        c.fillStyle = seriesColour(panel, i);
+        c.fillRect(p.x + p.width + 10, y - 9, 11, 11);
+        text(c, panel.series[i], p.x + p.width + 26, y, 'left', '--ink');
+        y += 18;
+    }
+}
+
+function drawChart(canvas, panel, ratio) {
+    const { c, plot: p } = begin(canvas, ratio, panel.series.length > 1 ? 96 : 20);
+    const x = i => p.x + p.width * whereIs(panel.x, i);
+    const y = v => p.y + p.height * (1 - (v - panel.low) / (panel.high - panel.low));
+    for (const t of ticks(linear(panel.low, panel.high), 26 / p.height)) {
+        c.strokeStyle = css('--grid');
+        line(c, p.x, p.y + p.height * (1 - t.at), p.x + p.width, p.y + p.height * (1 - t.at));
+        text(c, t.text, p.x - 8, p.y + p.height * (1 - t.at) + 4, 'right', '--soft');
+    }
+    c.save();
+    c.beginPath();
+    c.rect(p.x, p.y - 1, p.width, p.height + 2);
+    c.clip();
+    panel.series.forEach((_, s) => drawSeries(c, panel, p, s, x, y));
+    c.restore();
+    frame(c, p);
+    xAxis(c, p, panel.x);
+    yLabel(c, p, panel.quantity);
+    names(c, panel, p);
+    return p;
+}
+
+// ------------------------------------------------------------------------------- panels
+
+// Where the pointer is in a plot, or null.
+function place(event, canvas, p) {
+    const box = canvas.getBoundingClientRect();
+    const u = (event.clientX - box.left - p.x) / p.width, v = 1 - (event.clientY - box.top - p.y) / p.height;
+    return u < -0.02 || u > 1.02 || v < -0.02 || v > 1.02 ? null : [clamp(u, 0, 1), clamp(v, 0, 1)];
+}
+
+function read(panel, u, v) {
+    const at = panel.x.name + ' ' + figure(valueAt(panel.x, u));
+    if (panel.form === 'map') return `${at}, ${panel.y.name} ${figure(valueAt(panel.y, v))}: ${figure(mapValue(panel, u, v))}`;
+    const [low, high, f] = between(panel.x, u), n = panel.x.nodes.length;
+    return at + ': ' + panel.series.map((name, s) => (panel.series.length > 1 ? name + ' ' : '') +
+        figure(mix(panel.values[s * n + low], panel.values[s * n + high], f))).slice(0, 8).join(', ');
+}
+
+function addPanel(panel, home) {
+    panel.values = floats(panel.values);
+    const canvas = element('canvas'), value = element('p', { className: 'value' });
+    home.append(element('section', {}, element('h3', { textContent: panel.title }),
+                        element('p', { textContent: panel.caption }), canvas, value));
+    let plot = null;
+    const draw = () => { plot = (panel.form === 'map' ? drawMap : drawChart)(canvas, panel, 0.68); };
+    canvas.addEventListener('pointermove', event => {
+        const at = place(event, canvas, plot);
+        value.textContent = at ? read(panel, ...at) : '';
+    });
+    canvas.addEventListener('pointerleave', () => { value.textContent = ''; });
+    return draw;
+}
+
+// ------------------------------------------------------------------------------- the table
+
+function explorer(table) {
+    table.values = table.values.map(floats);
+    const axes = table.axes, free = axes.map((a, i) => i).filter(i => axes[i].nodes.length > 1);
+    const state = { x: table.start.x, y: table.start.y, channel: table.start.channel, along: -1, whole: false,
+                    u: axes.map((a, i) => i === table.start.x || i === table.start.y ? 0.5 : placeOf(a, table.start.at[i])) };
+    const strides = [];
+    axes.reduce((stride, a) => (strides.push(stride), stride * a.nodes.length), 1);
+
+    // Multilinear at a point of places, as the table's own look-up.
+    function lookup(u) {
+        const values = table.values[state.channel], parts = axes.map((a, i) => between(a, u[i]));
+        let list = [[0, 1]];
+        parts.forEach(([low, high, f], a) => {
+            const next = [];
+            for (const [offset, weight] of list) {
+                if (f < 1) next.push([offset + low * strides[a], weight * (1 - f)]);
+                if (f > 0) next.push([offset + high * strides[a], weight * f]);
+            }
+            list = next;
+        });
+        return list.reduce((sum, [offset, weight]) => sum + weight * values[offset], 0);
+    }
+    // Values at the nodes of axis x, and of y where there is one, through the point.
+    function slice(x, y) {
+        const columns = axes[x].nodes.length, rows = y < 0 ? 1 : axes[y].nodes.length;
+        const values = new Float32Array(columns * rows), u = state.u.slice();
+        for (let i = 0; i < values.length; i++) {
+            u[x] = whereIs(axes[x], i % columns);
+            if (y >= 0) u[y] = whereIs(axes[y], Math.floor(i / columns));
+            values[i] = lookup(u);
+        }
+        return values;
+    }
+    const scaleOf = values => table.range ? { low: table.range[0], high: table.range[1],
+                                              signed: table.range[0] === -table.range[1] }
+        : rangeOf(state.whole ? table.values[state.channel] : values);
+
+    const heat = element('canvas', { id: 'map', tabIndex: 0 }), curve = element('canvas', { id: 'curve' });
+    heat.setAttribute('aria-label', 'map of the slice; arrow keys move the point');
+    const value = element('p', { className: 'value', id: 'value' }), controls = element('div', { id: 'controls' });
+    document.getElementById('main').append(element('div', { id: 'explorer' },
+        element('div', {}, value, heat, element('h2', { id: 'curve-title' }), curve), controls));
+
+    let map = null, plot = null;
+    function drawCurve() {
+        const along = state.along, canvas = curve, values = slice(along, -1), scale = scaleOf(values);
+        const name = table.channels[state.channel];
+        document.getElementById('curve-title').textContent = 'Along ' + axes[along].name + ', through the point';
+        const p = drawChart(canvas, { form: 'lines', series: [name], quantity: name, x: axes[along], values,
+                                      low: scale.low, high: scale.high }, 0.32);
+        const c = canvas.getContext('2d'), x = p.x + p.width * state.u[along], v = lookup(state.u);
+        c.fillStyle = css('--accent');
+        c.beginPath();
+        c.arc(x, p.y + p.height * (1 - (v - scale.low) / (scale.high - scale.low)), 4, 0, 7);
+        c.fill();
+    }
+    function mark() {
+        if (!plot) return;
+        const c = heat.getContext('2d'), x = plot.x + plot.width * state.u[state.x];
+        const y = plot.y + plot.height * (1 - state.u[state.y]);
+        for (const [ink, width] of [['#000', 3], ['#fff', 1.5]]) {
+            c.strokeStyle = ink;
+            c.lineWidth = width;
+            c.beginPath();
+            c.arc(x, y, 5, 0, 7);
+            c.stroke();
+        }
+    }
+    let kept = null; // the map without its mark
+    function drawPoint() {
+        if (plot) {
+            const c = heat.getContext('2d');
+            if (kept) c.putImageData(kept, 0, 0);
+            mark();
+        }
+        const at = free.map(i => axes[i].name + ' ' + figure(valueAt(axes[i], state.u[i]))).join(', ');
+        value.replaceChildren(element('b', { textContent: figure(lookup(state.u)) }), ' ' + table.channels[state.channel] + ' at ' + at);
+        drawCurve();
+    }
+    function draw() {
+        if (state.y >= 0) {
+            const values = slice(state.x, state.y);
+            map = { x: axes[state.x], y: axes[state.y], values, ...scaleOf(values) };
+            plot = drawMap(heat, map, 0.72);
+            kept = heat.getContext('2d').getImageData(0, 0, heat.width, heat.height);
+        }
+        heat.hidden = state.y < 0;
+        drawPoint();
+    }
+    const move = (u, v) => {
+        state.u[state.x] = u;
+        state.u[state.y] = v;
+        syncSliders();
+        drawPoint();
+    };
+    const follow = event => {
+        const at = plot && place(event, heat, plot);
+        if (at) move(...at);
+    };
+    heat.addEventListener('pointermove', follow);
+    heat.addEventListener('pointerdown', follow);
+    heat.addEventListener('keydown', event => {
+        const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+        if (!by) return;
+        event.preventDefault();
+        move(...[state.x, state.y].map((a, k) => clamp(state.u[a] + by[k] / (axes[a].size - 1), 0, 1)));
+    });
+
+    function choose(id, label, list, current, take) {
+        const made = element('select', { id });
+        for (const [v, words] of list) made.append(element('option', { value: v, textContent: words, selected: v === current }));
+        made.addEventListener('change', () => { take(+made.value); layout(); draw(); });
+        controls.append(element('label', {}, label, made));
+    }
+    function slider(a) {
+        const range = element('input', { type: 'range', id: 'at-' + axes[a].name, min: 0, max: 1, step: 0.001, value: state.u[a] });
+        const shown = element('output', { textContent: figure(valueAt(axes[a], state.u[a])) });
+        range.addEventListener('input', () => {
+            state.u[a] = +range.value;
+            shown.textContent = figure(valueAt(axes[a], state.u[a]));
+            draw();
+        });
+        controls.append(element('label', { className: 'slider', title: axes[a].meaning || '' }, axes[a].name, range, shown));
+    }
+    function syncSliders() {
+        for (const a of [state.x, state.y]) {
+            const range = document.getElementById('at-' + (axes[a] || {}).name);
+            if (range) range.value = state.u[a], range.nextSibling.textContent = figure(valueAt(axes[a], state.u[a]));
+        }
+    }
+    const named = list => list.map(i => [i, axes[i].name]);
+    function layout() {
+        controls.replaceChildren();
+        const rest = free.filter(i => i !== state.x && i !== state.y);
+        if (state.along < 0 || !free.includes(state.along)) state.along = rest.length ? rest[0] : state.x;
+        if (state.y >= 0) {
+            choose('axis-x', 'right', named(free), state.x, v => { if (v === state.y) state.y = state.x; state.x = v; });
+            choose('axis-y', 'up', named(free), state.y, v => { if (v === state.x) state.x = state.y; state.y = v; });
+        }
+        if (table.channels.length > 1) choose('channel', 'channel', table.channels.map((c, i) => [i, c]), state.channel, v => { state.channel = v; });
+        if (free.length > 1) choose('along', 'curve along', named(free), state.along, v => { state.along = v; });
+        rest.forEach(slider);
+        if (state.y < 0) slider(state.x);
+        const fixed = axes.filter(a => a.nodes.length === 1).map(a => a.name + ' = ' + figure(a.nodes[0]));
+        if (fixed.length) controls.append(element('p', { textContent: fixed.join(', ') }));
+        if (!table.range) {
+            const box = element('input', { type: 'checkbox', id: 'whole', checked: state.whole });
+            box.addEventListener('change', () => { state.whole = box.checked; draw(); });
+            controls.append(element('label', { className: 'check' }, box, 'scale of the whole table'));
+        }
+        for (const a of free) if (axes[a].meaning) controls.append(element('p', { textContent: axes[a].name + ': ' + axes[a].meaning }));
+    }
+    layout();
+    return draw;
+}
+
+const draws = [];
+if (data.table) draws.push(explorer(data.table));
+const home = document.getElementById('panels');
+for (const panel of data.panels) draws.push(addPanel(panel, home));
+const drawAll = () => draws.forEach(draw => draw());
+let width = 0;
+new ResizeObserver(() => {
+    if (document.body.clientWidth === width) return;
+    width = document.body.clientWidth;
+    drawAll();
+}).observe(document.body);
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAll);
+})();

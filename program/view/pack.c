@@ -1,0 +1,182 @@
+/* pack.c - a pack as pictures: every function as a renderer gets it, and what its manifest says of it. */
+#include "program/view/view.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pack/contents.h"
+#include "pack/read.h"
+#include "system/status.h"
+
+/* ======================================================================================
+ *                                       The manifest
+ * ====================================================================================== */
+
+static json_t *read_manifest(const char *folder, lq_error *error) {
+    char path[4096];
+    json_error_t cause;
+    if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, LQ_MANIFEST) >= sizeof path) {
+        lq_fail(error, LQ_BAD_INPUT, "the name of the pack's folder is too long");
+        return NULL;
+    }
+    json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &cause);
+    if (!root) lq_fail(error, LQ_FORMAT, "%s: %s", path, cause.text);
+    return root;
+}
+
+static const json_t *table_of(const json_t *manifest, size_t table) {
+    return json_array_get(json_object_get(manifest, "tables"), table);
+}
+
+/* "error p99 0.0012, max 0.0039": what was measured when the pack was made. */
+static void describe_error(const json_t *manifest, size_t table, char *text, size_t size) {
+    const json_t *error = json_object_get(table_of(manifest, table), "error");
+    const char *kind = json_string_value(json_object_get(error, "kind"));
+    snprintf(
+        text, size, "%serror p99 %.2g, max %.2g", kind && strcmp(kind, "relative") == 0 ? "relative " : "",
+        json_number_value(json_object_get(error, "p99")), json_number_value(json_object_get(error, "max")));
+}
+
+/* ", budget p99 0.002, max 0.01", or nothing. */
+static void describe_budget(const lq_shipped *shipped, char *text, size_t size) {
+    text[0] = '\0';
+    if (isfinite(shipped->p99) && isfinite(shipped->max))
+        snprintf(text, size, ", budget p99 %.2g, max %.2g", shipped->p99, shipped->max);
+    else if (isfinite(shipped->p99)) snprintf(text, size, ", budget p99 %.2g", shipped->p99);
+    else if (isfinite(shipped->max)) snprintf(text, size, ", budget max %.2g", shipped->max);
+}
+
+/* ======================================================================================
+ *                                     One of its functions
+ * ====================================================================================== */
+
+/* Nodes of an axis that the pack does not tell. */
+enum { NODES = 65 };
+
+/* The axes over which factors are drawn: those of their table, or even ones over its box. */
+static lq_status make_axes(const lq_shipped *shipped, lq_axis *axes, lq_error *error) {
+    const lq_factored *factored = shipped->factored;
+    lq_status status = LQ_OK;
+    for (int a = 0; status == LQ_OK && a < factored->axis_count; a++) {
+        const bool flat = !(factored->axes[a].min < factored->axes[a].max);
+        status = shipped->axes[0].size > 0
+                     ? lq_axis_copy(&axes[a], &shipped->axes[a], error)
+                     : lq_axis_make(&axes[a], factored->axes[a].name, factored->axes[a].min,
+                                    factored->axes[a].max, flat ? 1 : NODES, LQ_MAP_LINEAR, 0.0, error);
+    }
+    return status;
+}
+
+/* All axes but two get the one node in their middle: the slice that is drawn. */
+static lq_status flatten(lq_axis *axis, lq_error *error) {
+    const double middle = axis->nodes[axis->size / 2];
+    lq_axis flat;
+    const lq_status status = lq_axis_make(&flat, axis->name, middle, middle, 1, LQ_MAP_LINEAR, 0.0, error);
+    if (status != LQ_OK) return status;
+    lq_axis_free(axis);
+    *axis = flat;
+    return LQ_OK;
+}
+
+/* What a shader gets from factors, as a table over that slice. */
+static lq_status decode(const lq_shipped *shipped, lq_table **table, lq_error *error) {
+    static const char *const channel = "value";
+    lq_axis axes[LQ_MAX_AXES] = {0};
+    const int count = shipped->factored->axis_count;
+    lq_status status = make_axes(shipped, axes, error);
+    for (int a = 0, drawn = 0; status == LQ_OK && a < count; a++)
+        if (axes[a].size > 1 && ++drawn > 2) status = flatten(&axes[a], error);
+    if (status == LQ_OK) status = lq_table_create(table, axes, count, &channel, 1, error);
+    for (int a = 0; a < count; a++) lq_axis_free(&axes[a]);
+    for (size_t i = 0; status == LQ_OK && i < lq_table_entries(*table); i++) {
+        double x[LQ_MAX_AXES];
+        size_t rest = i;
+        for (int a = 0; a < count; rest /= (*table)->axes[a].size, a++)
+            x[a] = (*table)->axes[a].nodes[rest % (*table)->axes[a].size];
+        (*table)->channels[0][i] = (float)lq_factored_lookup_gpu(shipped->factored, x);
+    }
+    return status;
+}
+
+static lq_status add_slices(lq_figure *figure, const lq_table *table, const char *name, const char *note,
+                            lq_error *error) {
+    lq_status status = LQ_OK;
+    double at[LQ_MAX_AXES];
+    lq_slice slice = {.table = table, .at = at, .note = note};
+    lq_slice_axes(table, &slice.x, &slice.y);
+    for (int a = 0; a < table->axis_count; a++) at[a] = table->axes[a].nodes[table->axes[a].size / 2];
+    for (int c = 0; status == LQ_OK && slice.x >= 0 && c < table->channel_count; c++) {
+        char title[2 * LQ_NAME_SIZE + 4];
+        snprintf(title, sizeof title, "%s%s%s", name, table->channel_count > 1 ? " " : "",
+                 table->channel_count > 1 ? table->channel_names[c] : "");
+        slice.channel = c;
+        slice.title = title;
+        status = lq_figure_add_slice(figure, &slice, error);
+    }
+    return status;
+}
+
+static size_t bytes_of(const json_t *manifest, size_t table) {
+    const json_int_t bytes = json_integer_value(json_object_get(table_of(manifest, table), "bytes"));
+    return bytes > 0 ? (size_t)bytes : 0;
+}
+
+/* The function's line of the page's list. */
+static lq_status tell(lq_figure *figure, const lq_shipped *shipped, size_t bytes, const char *measured,
+                      const lq_panel *drawn, lq_error *error) {
+    char text[LQ_MESSAGE_SIZE], budget[96];
+    const bool changed = shipped->altered + shipped->differing > 0;
+    describe_budget(shipped, budget, sizeof budget);
+    snprintf(text, sizeof text, "%s%s, %zu bytes, %.3g to %.3g where drawn, %s%s%s%s",
+             shipped->kind ? shipped->kind->id : "mapping", shipped->factored ? " in factors" : "", bytes,
+             drawn->low, drawn->high, measured, budget, changed ? "; NOT AS IT WAS MADE: " : "",
+             changed ? shipped->suspect : "");
+    return lq_figure_tell(figure, shipped->name, text, error);
+}
+
+static lq_status add(lq_figure *figure, const lq_shipped *shipped, const json_t *manifest, size_t number,
+                     lq_error *error) {
+    const size_t first = figure->panel_count;
+    char measured[128];
+    lq_table *decoded = NULL;
+    describe_error(manifest, number, measured, sizeof measured);
+    lq_status status = shipped->factored ? decode(shipped, &decoded, error) : LQ_OK;
+    if (status == LQ_OK)
+        status = add_slices(figure, decoded ? decoded : shipped->table, shipped->name, measured, error);
+    if (status == LQ_OK && figure->panel_count > first)
+        status = tell(figure, shipped, bytes_of(manifest, number), measured, &figure->panels[first], error);
+    lq_table_free(decoded);
+    return status;
+}
+
+/* ======================================================================================
+ *                                         The pack
+ * ====================================================================================== */
+
+static lq_status start(const lq_pack *pack, const json_t *manifest, const char *folder, lq_figure **figure,
+                       lq_error *error) {
+    char text[LQ_MESSAGE_SIZE];
+    size_t bytes = 0;
+    for (size_t i = 0; i < pack->count; i++) bytes += bytes_of(manifest, i);
+    snprintf(text, sizeof text, "%zu functions, %zu bytes of textures · %.300s", pack->count, bytes, folder);
+    return lq_figure_create(figure, pack->name, text, error);
+}
+
+lq_status view_pack(const char *folder, bool factors, lq_figure **figure, lq_error *error) {
+    lq_pack pack = {0};
+    lq_status status = lq_pack_read(&pack, folder, error);
+    if (status != LQ_OK) return status;
+    json_t *manifest = read_manifest(folder, error);
+    status = manifest ? start(&pack, manifest, folder, figure, error) : LQ_FORMAT;
+    for (size_t i = 0; status == LQ_OK && i < pack.count; i++)
+        status = add(*figure, &pack.tables[i], manifest, i, error);
+    for (size_t i = 0; status == LQ_OK && factors && i < pack.count; i++)
+        if (pack.tables[i].factored)
+            status = view_add_factors(*figure, pack.tables[i].factored, pack.tables[i].name, error);
+    json_decref(manifest);
+    lq_pack_free(&pack);
+    return status;
+}
