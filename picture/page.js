@@ -59,7 +59,7 @@ const linear = (low, high) => ({ nodes: [low, high], exponent: 1, size: 2 });
 function ticks(axis, gap) {
     const low = axis.nodes[0], high = axis.nodes[axis.nodes.length - 1], even = axis.exponent === 1;
     if (axis.nodes.length < 2) return [{ value: low, at: 0, text: figure(low) }];
-    gap = Math.max(gap, 1 / 30);
+    gap = Math.max(gap, 1 / 30) * (1 - 1e-9);
     const start = 10 ** Math.ceil(Math.log10(high - low));
     let list = [];
     const near = at => list.reduce((least, t) => Math.min(least, Math.abs(t.at - at)), Infinity);

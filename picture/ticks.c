@@ -107,7 +107,7 @@ static int by_place(const void *a, const void *b) {
 static size_t fill(ruler *r) {
     const double start = pow(10.0, ceil(log10(r->high - r->low)));
     bool full[LQ_TICKS_MAX + 1];
-    r->gap = fmax(r->gap, 1.0 / (LQ_TICKS_MAX - 2));
+    r->gap = fmax(r->gap, 1.0 / (LQ_TICKS_MAX - 2)) * (1.0 - 1e-9); /* rounding is no lack of room */
     for (int i = 0; i < STEPS; i++) {
         const multiples m = of_step(r, step_of(start, i));
         const ruler empty = {r->axis, r->even, r->low, r->high, r->gap, r->ticks, 0};
