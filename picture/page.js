@@ -499,11 +499,12 @@ if (data.table) draws.push(explorer(data.table));
 const home = document.getElementById('panels');
 for (const panel of data.panels) draws.push(addPanel(panel, home));
 const drawAll = () => draws.forEach(draw => draw());
-let width = 0;
-new ResizeObserver(() => {
+let width = document.body.clientWidth;
+drawAll();
+new ResizeObserver(() => requestAnimationFrame(() => {
     if (document.body.clientWidth === width) return;
     width = document.body.clientWidth;
     drawAll();
-}).observe(document.body);
+})).observe(document.body);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAll);
 })();
