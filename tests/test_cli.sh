@@ -161,6 +161,12 @@ idle validate against layout kind diagnose samples $certificate ndf scattering m
 idle validate layout kind samples $certificate ndf scattering masking tolerance $light -- files/empty --diagnose
 idle validate samples $certificate $light -- files/empty --layout tm --kind fgd
 idle validate ndf scattering masking tolerance kind $light -- files/empty
+slices='x y at channel range'
+echo '{}' >files/empty.json
+idle view layout kind tolerance allow-plugin threads -- files/empty --axes files/empty -o folder/x.png
+idle view tolerance allow-plugin threads -- files/empty --layout tm --kind fgd -o folder/x.png
+idle view $slices kind tolerance allow-plugin threads -- files -o folder/x.png
+idle view $slices kind -- files/empty.json -o folder/x.png
 refused 'no arguments' list fgd
 
 # -------------------------------------------------------------------------------------- eval

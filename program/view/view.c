@@ -193,7 +193,7 @@ static bool check(const view_request *request) {
     else if (form_of(request->output) == FORM_NONE)
         cli_message("%s: what kind of picture is that; accepted: names that end in .html, .png or .svg",
                     request->output);
-    else if (request->layout >= 0 && !request->kind)
+    else if (!request->axes && request->layout >= 0 && !request->kind)
         cli_message("--layout needs --kind: a published file does not say which table it holds");
     else if (!request->axes && request->layout < 0 && ends_with(request->input, ".npy"))
         cli_message("%s: a .npy does not say what its axes are; say it with --axes AXES.json",
