@@ -82,7 +82,8 @@ function ticks(axis, gap) {
         const added = [];
         for (const t of all) {
             const last = added.length ? t.at - added[added.length - 1].at : Infinity;
-            if (near(t.at) >= gap && last >= gap && (even ? !full.has(interval(t.at)) : t.value - low <= 10 * step)) added.push(t);
+            const wanted = even ? !full.has(interval(t.at)) : t.value - low <= 10 * step;
+            if (wanted && near(t.at) >= gap && last >= gap) added.push(t);
         }
         list = list.concat(added).sort((a, b) => a.at - b.at);
     }
@@ -105,15 +106,18 @@ function rangeOf(values) {
 
 const steps = hex => Array.from({ length: hex.length / 6 }, (_, i) =>
     [0, 2, 4].map(k => parseInt(hex.slice(6 * i + k, 6 * i + k + 2), 16)));
-const maps = { value: steps(data.colours.value), signed: steps(data.colours.signed), bad: steps(data.colours.bad)[0] };
+const { colours } = data;
+const maps = { value: steps(colours.value), signed: steps(colours.signed), bad: steps(colours.bad)[0] };
+const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
 
 function colour(scale, v) {
     if (!Number.isFinite(v)) return maps.bad;
-    return maps[scale.signed ? 'signed' : 'value'][Math.round(255 * clamp((v - scale.low) / (scale.high - scale.low), 0, 1))];
+    const t = clamp((v - scale.low) / (scale.high - scale.low), 0, 1);
+    return maps[scale.signed ? 'signed' : 'value'][Math.round(255 * t)];
 }
 
 function seriesColour(panel, i) {
-    const count = panel.series.length - (panel.reference ? 1 : 0), dark = matchMedia('(prefers-color-scheme: dark)').matches;
+    const count = panel.series.length - (panel.reference ? 1 : 0), dark = isDark();
     if (i === count) return css('--axis');
     if (!panel.ordered && count <= 4) return css('--hue' + i);
     const from = dark ? 0.38 : 0.25, t = from + (dark ? 0.57 : 0.6) * i / Math.max(count - 1, 1);
@@ -162,7 +166,10 @@ function xAxis(c, p, axis) {
     const bottom = p.y + p.height + 1;
     c.strokeStyle = css('--axis');
     if (p.width / axis.nodes.length >= 3)
-        axis.nodes.forEach((_, i) => line(c, p.x + p.width * whereIs(axis, i), bottom, p.x + p.width * whereIs(axis, i), bottom + 2.5));
+        axis.nodes.forEach((_, i) => {
+            const x = p.x + p.width * whereIs(axis, i);
+            line(c, x, bottom, x, bottom + 2.5);
+        });
     for (const t of ticks(axis, 40 / p.width)) {
         line(c, p.x + p.width * t.at, bottom, p.x + p.width * t.at, bottom + 6);
         text(c, t.text, p.x + p.width * t.at, bottom + 19, 'center', '--soft');
@@ -181,7 +188,10 @@ function yLabel(c, p, words) {
 function yAxis(c, p, axis) {
     c.strokeStyle = css('--axis');
     if (p.height / axis.nodes.length >= 3)
-        axis.nodes.forEach((_, i) => line(c, p.x - 1, p.y + p.height * (1 - whereIs(axis, i)), p.x - 3.5, p.y + p.height * (1 - whereIs(axis, i))));
+        axis.nodes.forEach((_, i) => {
+            const y = p.y + p.height * (1 - whereIs(axis, i));
+            line(c, p.x - 1, y, p.x - 3.5, y);
+        });
     for (const t of ticks(axis, 24 / p.height)) {
         const y = p.y + p.height * (1 - t.at);
         line(c, p.x - 1, y, p.x - 7, y);
@@ -230,7 +240,8 @@ function drawMap(canvas, map, ratio) {
         for (const [x0, x1, fx] of columns) {
             const rgb = colour(map, mix(mix(map.values[y0 * w + x0], map.values[y0 * w + x1], fx),
                                         mix(map.values[y1 * w + x0], map.values[y1 * w + x1], fx), fy));
-            image.data[k++] = rgb[0], image.data[k++] = rgb[1], image.data[k++] = rgb[2], image.data[k++] = 255;
+            for (const part of rgb) image.data[k++] = part;
+            image.data[k++] = 255;
         }
     }
     c.putImageData(image, left, top);
@@ -315,7 +326,8 @@ function place(event, canvas, p) {
 
 function read(panel, u, v) {
     const at = panel.x.name + ' ' + figure(valueAt(panel.x, u));
-    if (panel.form === 'map') return `${at}, ${panel.y.name} ${figure(valueAt(panel.y, v))}: ${figure(mapValue(panel, u, v))}`;
+    if (panel.form === 'map')
+        return `${at}, ${panel.y.name} ${figure(valueAt(panel.y, v))}: ${figure(mapValue(panel, u, v))}`;
     const [low, high, f] = between(panel.x, u), n = panel.x.nodes.length;
     return at + ': ' + panel.series.map((name, s) => (panel.series.length > 1 ? name + ' ' : '') +
         figure(mix(panel.values[s * n + low], panel.values[s * n + high], f))).slice(0, 8).join(', ');
@@ -338,164 +350,193 @@ function addPanel(panel, home) {
 
 // ------------------------------------------------------------------------------- the table
 
-function explorer(table) {
+const table = data.table, axes = table ? table.axes : [];
+const free = axes.map((_, i) => i).filter(i => axes[i].nodes.length > 1); // of several nodes
+const state = {}; // axes x and y (-1: none) of the map, along of the curve; channel; whole: the scale; point u
+
+function start() {
     table.values = table.values.map(floats);
-    const axes = table.axes, free = axes.map((a, i) => i).filter(i => axes[i].nodes.length > 1);
-    const state = { x: table.start.x, y: table.start.y, channel: table.start.channel, along: -1, whole: false,
-                    u: axes.map((a, i) => i === table.start.x || i === table.start.y ? 0.5 : placeOf(a, table.start.at[i])) };
-    const strides = [];
-    axes.reduce((stride, a) => (strides.push(stride), stride * a.nodes.length), 1);
+    const { x, y, channel, at } = table.start;
+    const u = axes.map((axis, i) => i === x || i === y ? 0.5 : placeOf(axis, at[i]));
+    Object.assign(state, { x, y, channel, along: -1, whole: false, u });
+}
 
-    // Multilinear at a point of places, as the table's own look-up.
-    function lookup(u) {
-        const values = table.values[state.channel], parts = axes.map((a, i) => between(a, u[i]));
-        let list = [[0, 1]];
-        parts.forEach(([low, high, f], a) => {
-            const next = [];
-            for (const [offset, weight] of list) {
-                if (f < 1) next.push([offset + low * strides[a], weight * (1 - f)]);
-                if (f > 0) next.push([offset + high * strides[a], weight * f]);
-            }
-            list = next;
-        });
-        return list.reduce((sum, [offset, weight]) => sum + weight * values[offset], 0);
-    }
-    // Values at the nodes of axis x, and of y where there is one, through the point.
-    function slice(x, y) {
-        const columns = axes[x].nodes.length, rows = y < 0 ? 1 : axes[y].nodes.length;
-        const values = new Float32Array(columns * rows), u = state.u.slice();
-        for (let i = 0; i < values.length; i++) {
-            u[x] = whereIs(axes[x], i % columns);
-            if (y >= 0) u[y] = whereIs(axes[y], Math.floor(i / columns));
-            values[i] = lookup(u);
-        }
-        return values;
-    }
-    const scaleOf = values => table.range ? { low: table.range[0], high: table.range[1],
-                                              signed: table.range[0] === -table.range[1] }
-        : rangeOf(state.whole ? table.values[state.channel] : values);
-
-    const heat = element('canvas', { id: 'map', tabIndex: 0 }), curve = element('canvas', { id: 'curve' });
-    heat.setAttribute('aria-label', 'map of the slice; arrow keys move the point');
-    const value = element('p', { className: 'value', id: 'value' }), controls = element('div', { id: 'controls' });
-    document.getElementById('main').append(element('div', { id: 'explorer' },
-        element('div', {}, value, heat, element('h2', { id: 'curve-title' }), curve), controls));
-
-    let map = null, plot = null;
-    function drawCurve() {
-        const along = state.along, canvas = curve, values = slice(along, -1), scale = scaleOf(values);
-        const name = table.channels[state.channel];
-        document.getElementById('curve-title').textContent = 'Along ' + axes[along].name + ', through the point';
-        const p = drawChart(canvas, { form: 'lines', series: [name], quantity: name, x: axes[along], values,
-                                      low: scale.low, high: scale.high }, 0.32);
-        const c = canvas.getContext('2d'), x = p.x + p.width * state.u[along], v = lookup(state.u);
-        c.fillStyle = css('--accent');
-        c.beginPath();
-        c.arc(x, p.y + p.height * (1 - (v - scale.low) / (scale.high - scale.low)), 4, 0, 7);
-        c.fill();
-    }
-    function mark() {
-        if (!plot) return;
-        const c = heat.getContext('2d'), x = plot.x + plot.width * state.u[state.x];
-        const y = plot.y + plot.height * (1 - state.u[state.y]);
-        for (const [ink, width] of [['#000', 3], ['#fff', 1.5]]) {
-            c.strokeStyle = ink;
-            c.lineWidth = width;
-            c.beginPath();
-            c.arc(x, y, 5, 0, 7);
-            c.stroke();
-        }
-    }
-    let kept = null; // the map without its mark
-    function drawPoint() {
-        if (plot) {
-            const c = heat.getContext('2d');
-            if (kept) c.putImageData(kept, 0, 0);
-            mark();
-        }
-        const at = free.map(i => axes[i].name + ' ' + figure(valueAt(axes[i], state.u[i]))).join(', ');
-        value.replaceChildren(element('b', { textContent: figure(lookup(state.u)) }), ' ' + table.channels[state.channel] + ' at ' + at);
-        drawCurve();
-    }
-    function draw() {
-        if (state.y >= 0) {
-            const values = slice(state.x, state.y);
-            map = { x: axes[state.x], y: axes[state.y], values, ...scaleOf(values) };
-            plot = drawMap(heat, map, 0.72);
-            kept = heat.getContext('2d').getImageData(0, 0, heat.width, heat.height);
-        }
-        heat.hidden = state.y < 0;
-        drawPoint();
-    }
-    const move = (u, v) => {
-        state.u[state.x] = u;
-        state.u[state.y] = v;
-        syncSliders();
-        drawPoint();
-    };
-    const follow = event => {
-        const at = plot && place(event, heat, plot);
-        if (at) move(...at);
-    };
-    heat.addEventListener('pointermove', follow);
-    heat.addEventListener('pointerdown', follow);
-    heat.addEventListener('keydown', event => {
-        const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-        if (!by) return;
-        event.preventDefault();
-        move(...[state.x, state.y].map((a, k) => clamp(state.u[a] + by[k] / (axes[a].size - 1), 0, 1)));
+// Multilinear at a point of places, as the table's own look-up.
+function lookup(u) {
+    const values = table.values[state.channel];
+    let list = [[0, 1]], stride = 1; // offsets of entries and their weights
+    axes.forEach((axis, a) => {
+        const [low, high, f] = between(axis, u[a]), step = stride;
+        list = list.flatMap(([offset, weight]) => [[offset + low * step, weight * (1 - f)],
+                                                   [offset + high * step, weight * f]]);
+        list = list.filter(([, weight]) => weight > 0);
+        stride *= axis.nodes.length;
     });
+    return list.reduce((sum, [offset, weight]) => sum + weight * values[offset], 0);
+}
 
-    function choose(id, label, list, current, take) {
-        const made = element('select', { id });
-        for (const [v, words] of list) made.append(element('option', { value: v, textContent: words, selected: v === current }));
-        made.addEventListener('change', () => { take(+made.value); layout(); draw(); });
-        controls.append(element('label', {}, label, made));
+// Values at the nodes of axis x, and of y where there is one, through the point.
+function slice(x, y) {
+    const columns = axes[x].nodes.length, rows = y < 0 ? 1 : axes[y].nodes.length;
+    const values = new Float32Array(columns * rows), u = state.u.slice();
+    for (let i = 0; i < values.length; i++) {
+        u[x] = whereIs(axes[x], i % columns);
+        if (y >= 0) u[y] = whereIs(axes[y], Math.floor(i / columns));
+        values[i] = lookup(u);
     }
-    function slider(a) {
-        const range = element('input', { type: 'range', id: 'at-' + axes[a].name, min: 0, max: 1, step: 0.001, value: state.u[a] });
-        const shown = element('output', { textContent: figure(valueAt(axes[a], state.u[a])) });
-        range.addEventListener('input', () => {
-            state.u[a] = +range.value;
-            shown.textContent = figure(valueAt(axes[a], state.u[a]));
-            draw();
-        });
-        controls.append(element('label', { className: 'slider', title: axes[a].meaning || '' }, axes[a].name, range, shown));
+    return values;
+}
+
+function scaleOf(values) {
+    if (!table.range) return rangeOf(state.whole ? table.values[state.channel] : values);
+    const [low, high] = table.range;
+    return { low, high, signed: low === -high };
+}
+
+const heat = element('canvas', { id: 'map', tabIndex: 0 }), curve = element('canvas', { id: 'curve' });
+const value = element('p', { className: 'value', id: 'value' }), controls = element('div', { id: 'controls' });
+const curveTitle = element('h2', { id: 'curve-title' });
+let plot = null, bare = null; // of the map: where it is, and its pixels without the mark
+
+function drawCurve() {
+    const axis = axes[state.along], values = slice(state.along, -1), { low, high } = scaleOf(values);
+    const name = table.channels[state.channel];
+    curveTitle.textContent = `Along ${axis.name}, through the point`;
+    const p = drawChart(curve, { form: 'lines', series: [name], quantity: name, x: axis, values, low, high }, 0.32);
+    const c = curve.getContext('2d'), y = p.y + p.height * (1 - (lookup(state.u) - low) / (high - low));
+    c.fillStyle = css('--accent');
+    c.beginPath();
+    c.arc(p.x + p.width * state.u[state.along], y, 4, 0, 7);
+    c.fill();
+}
+
+function markPoint() {
+    const c = heat.getContext('2d');
+    c.putImageData(bare, 0, 0);
+    for (const [ink, width] of [['#000', 3], ['#fff', 1.5]]) {
+        c.strokeStyle = ink;
+        c.lineWidth = width;
+        c.beginPath();
+        c.arc(plot.x + plot.width * state.u[state.x], plot.y + plot.height * (1 - state.u[state.y]), 5, 0, 7);
+        c.stroke();
     }
-    function syncSliders() {
-        for (const a of [state.x, state.y]) {
-            const range = document.getElementById('at-' + (axes[a] || {}).name);
-            if (range) range.value = state.u[a], range.nextSibling.textContent = figure(valueAt(axes[a], state.u[a]));
-        }
+}
+
+function drawPoint() {
+    if (state.y >= 0) markPoint();
+    const at = free.map(i => axes[i].name + ' ' + figure(valueAt(axes[i], state.u[i]))).join(', ');
+    const number = element('b', { textContent: figure(lookup(state.u)) });
+    value.replaceChildren(number, ` ${table.channels[state.channel]} at ${at}`);
+    drawCurve();
+}
+
+function drawTable() {
+    heat.hidden = state.y < 0;
+    if (state.y >= 0) {
+        const values = slice(state.x, state.y);
+        plot = drawMap(heat, { x: axes[state.x], y: axes[state.y], values, ...scaleOf(values) }, 0.72);
+        bare = heat.getContext('2d').getImageData(0, 0, heat.width, heat.height);
     }
-    const named = list => list.map(i => [i, axes[i].name]);
-    function layout() {
-        controls.replaceChildren();
-        const rest = free.filter(i => i !== state.x && i !== state.y);
-        if (state.along < 0 || !free.includes(state.along)) state.along = rest.length ? rest[0] : state.x;
-        if (state.y >= 0) {
-            choose('axis-x', 'right', named(free), state.x, v => { if (v === state.y) state.y = state.x; state.x = v; });
-            choose('axis-y', 'up', named(free), state.y, v => { if (v === state.x) state.x = state.y; state.y = v; });
-        }
-        if (table.channels.length > 1) choose('channel', 'channel', table.channels.map((c, i) => [i, c]), state.channel, v => { state.channel = v; });
-        if (free.length > 1) choose('along', 'curve along', named(free), state.along, v => { state.along = v; });
-        rest.forEach(slider);
-        if (state.y < 0) slider(state.x);
-        const fixed = axes.filter(a => a.nodes.length === 1).map(a => a.name + ' = ' + figure(a.nodes[0]));
-        if (fixed.length) controls.append(element('p', { textContent: fixed.join(', ') }));
-        if (!table.range) {
-            const box = element('input', { type: 'checkbox', id: 'whole', checked: state.whole });
-            box.addEventListener('change', () => { state.whole = box.checked; draw(); });
-            controls.append(element('label', { className: 'check' }, box, 'scale of the whole table'));
-        }
-        for (const a of free) if (axes[a].meaning) controls.append(element('p', { textContent: axes[a].name + ': ' + axes[a].meaning }));
+    drawPoint();
+}
+
+function move(u, v) {
+    state.u[state.x] = u;
+    state.u[state.y] = v;
+    drawPoint();
+}
+
+function followPointer(event) {
+    const at = place(event, heat, plot);
+    if (at) move(...at);
+}
+
+function followKey(event) {
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    move(...[state.x, state.y].map((a, k) => clamp(state.u[a] + by[k] / (axes[a].size - 1), 0, 1)));
+}
+
+// ------------------------------------------------------------------------------- its controls
+
+function choose(id, label, list, current, take) {
+    const made = element('select', { id });
+    for (const [v, words] of list)
+        made.append(element('option', { value: v, textContent: words, selected: v === current }));
+    made.addEventListener('change', () => {
+        take(+made.value);
+        layOut();
+        drawTable();
+    });
+    controls.append(element('label', {}, label, made));
+}
+
+function slider(a) {
+    const axis = axes[a], shown = element('output', { textContent: figure(valueAt(axis, state.u[a])) });
+    const range = element('input', { type: 'range', id: 'at-' + axis.name, min: 0, max: 1, step: 0.001 });
+    range.value = state.u[a];
+    range.addEventListener('input', () => {
+        state.u[a] = +range.value;
+        shown.textContent = figure(valueAt(axis, state.u[a]));
+        drawTable();
+    });
+    controls.append(element('label', { className: 'slider', title: axis.meaning }, axis.name, range, shown));
+}
+
+function scaleBox() {
+    const box = element('input', { type: 'checkbox', id: 'whole', checked: state.whole });
+    box.addEventListener('change', () => {
+        state.whole = box.checked;
+        drawTable();
+    });
+    controls.append(element('label', { className: 'check' }, box, 'scale of the whole table'));
+}
+
+// An axis of the map; where it is the other one's, they are exchanged.
+function chooseAxis(id, label, mine, other) {
+    choose(id, label, free.map(i => [i, axes[i].name]), state[mine], v => {
+        if (v === state[other]) state[other] = state[mine];
+        state[mine] = v;
+    });
+}
+
+function layOut() {
+    const rest = free.filter(i => i !== state.x && i !== state.y);
+    if (state.along < 0) state.along = rest.length ? rest[0] : state.x;
+    controls.replaceChildren();
+    if (state.y >= 0) {
+        chooseAxis('axis-x', 'right', 'x', 'y');
+        chooseAxis('axis-y', 'up', 'y', 'x');
+        choose('along', 'curve along', free.map(i => [i, axes[i].name]), state.along, v => { state.along = v; });
     }
-    layout();
-    return draw;
+    if (table.channels.length > 1)
+        choose('channel', 'channel', [...table.channels.entries()], state.channel, v => { state.channel = v; });
+    (state.y >= 0 ? rest : free).forEach(slider);
+    if (!table.range) scaleBox();
+    for (const axis of axes) {
+        const fixed = axis.nodes.length === 1 ? ' = ' + figure(axis.nodes[0]) : '';
+        const words = axis.name + fixed + (axis.meaning ? ': ' + axis.meaning : '');
+        if (words !== axis.name) controls.append(element('p', { textContent: words }));
+    }
+}
+
+function addTable() {
+    start();
+    layOut();
+    heat.setAttribute('aria-label', 'map of the slice; arrow keys move the point');
+    heat.addEventListener('pointermove', followPointer);
+    heat.addEventListener('pointerdown', followPointer);
+    heat.addEventListener('keydown', followKey);
+    const pictures = element('div', {}, value, heat, curveTitle, curve);
+    document.getElementById('main').append(element('div', { id: 'explorer' }, pictures, controls));
 }
 
 const draws = [];
-if (data.table) draws.push(explorer(data.table));
+if (table) {
+    addTable();
+    draws.push(drawTable);
+}
 const home = document.getElementById('panels');
 for (const panel of data.panels) draws.push(addPanel(panel, home));
 const drawAll = () => draws.forEach(draw => draw());

@@ -156,6 +156,7 @@ refused '--at eta: given twice' t.exr --at eta=0.5 --at eta=0.6 -o out/t.png
 refused 'that axis is drawn' t.exr --at mu=0.5 -o out/t.png
 refused "no channel 'q'; accepted: pass" t.exr --channel q -o out/t.png
 refused 'LOW < HIGH' t.exr --range 1:1 -o out/t.png
+refused 'LOW < HIGH' t.exr --range=-1e300:1e300 -o out/t.png
 refused 'LOW < HIGH' t.exr --range 0:x -o out/t.png
 refused 'say it with --axes' t.npy -o out/t.png
 refused 'needs --kind' t.npy --layout tm -o out/t.png
@@ -222,12 +223,19 @@ said.push(document.getElementById('curve-title').textContent);
     echo 0.5
     echo 'Along mu, through the point'
 } | diff - seen || fail "the page of a table, in a browser"
-# The corner of the map, and a narrow page that is no wider than its window.
+# A narrow page is no wider than its window. The corner of the map has the colour of its value, and arrow keys go there.
+"$lacquer" view t.exr --at eta=0.5 --range 0:1 -o out/t.html
 view out/t.html "
 said.push(document.documentElement.scrollWidth <= innerWidth);
-said.push(pixel(60, 12) === pixel(60, 13));
+const hex = JSON.parse(document.getElementById('data').textContent).colours.value, corner = pixel(60, 12);
+for (const key of ['ArrowLeft', 'ArrowUp'])
+    for (let i = 0; i < 9; i++) document.getElementById('map').dispatchEvent(new KeyboardEvent('keydown', { key }));
+said.push(value());
+const at = 6 * Math.round(255 * parseFloat(value()));
+said.push(corner === [0, 2, 4].map(k => parseInt(hex.slice(at + k, at + k + 2), 16)).join());
 " 500 >seen
-printf 'true\ntrue\n' | diff - seen || fail "a narrow page"
+printf 'true\n%s pass at mu 0, alpha 1, eta 0.5\ntrue\n' "$(value_at mu=0 alpha=1 eta=0.5)" | diff - seen ||
+    fail "a narrow page"
 "$lacquer" view p -o out/p.html
 view out/p.html "said.push(document.querySelectorAll('#panels canvas').length);" >seen
 echo 6 | diff - seen || fail "the page of a pack, in a browser"

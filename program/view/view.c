@@ -1,6 +1,7 @@
 /* view.c - `lacquer view`: tables, factors, packs and stacks to look at. */
 #include "program/view/view.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -27,14 +28,20 @@ enum { OPTION_TOLERANCE = 300, OPTION_TRUST };
 enum { TABLE = 1, FOREIGN = 2, PUBLISHED = 4, FACTORS = 8, PACK = 16, STACK = 32 };
 enum { TABLES = TABLE | FOREIGN | PUBLISHED };
 
+/* What float32 holds. */
+#define RANGE_MAX 3e38
+
 static bool read_range(void *field, const char *text) {
     view_range *range = field;
     char low[64] = "";
     const char *colon = strchr(text, ':');
     if (colon && (size_t)(colon - text) < sizeof low) memcpy(low, text, (size_t)(colon - text));
     range->given = colon && cli_number(low, &range->ends[0]) && cli_number(colon + 1, &range->ends[1]) &&
-                   range->ends[0] < range->ends[1];
-    if (!range->given) cli_message("--range: '%.100s' is not LOW:HIGH with LOW < HIGH", text);
+                   range->ends[0] < range->ends[1] && fabs(range->ends[0]) <= RANGE_MAX &&
+                   fabs(range->ends[1]) <= RANGE_MAX;
+    if (!range->given)
+        cli_message("--range: '%.100s' is not LOW:HIGH with LOW < HIGH, both from %g to %g", text, -RANGE_MAX,
+                    RANGE_MAX);
     return range->given;
 }
 
