@@ -212,6 +212,8 @@ view out/t.html "
 said.push(value());
 set('at-eta', 1, 'input');
 said.push(value());
+set('at-eta', 0.4, 'input');
+said.push(value());
 set('axis-x', 2, 'change');
 said.push(document.getElementById('at-mu').value);
 set('along', 0, 'change');
@@ -220,6 +222,7 @@ said.push(document.getElementById('curve-title').textContent);
 {
     echo "$(value_at mu=0.25 alpha=0.5 eta=0.5) pass at mu 0.25, alpha 0.5, eta 0.5"
     echo "$(value_at mu=0.25 alpha=0.5 eta=0.9) pass at mu 0.25, alpha 0.5, eta 0.9"
+    echo "$(value_at mu=0.25 alpha=0.5 eta=0.66) pass at mu 0.25, alpha 0.5, eta 0.66"
     echo 0.5
     echo 'Along mu, through the point'
 } | diff - seen || fail "the page of a table, in a browser"
