@@ -2,4 +2,4 @@
 #     cmake -DFROM=page.js -DTO=page_js.c -DNAME=lq_page_script -P embed.cmake
 file(READ "${FROM}" bytes HEX)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
-file(WRITE "${TO}" "#include \"picture/page_parts.h\"\nconst char ${NAME}[] = {${bytes}0};\n")
+file(WRITE "${TO}" "extern const char ${NAME}[];\nconst char ${NAME}[] = {${bytes}0};\n")

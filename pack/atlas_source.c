@@ -369,15 +369,24 @@ static void say_all(FILE *out, lq_language language, const lq_atlas_contents *co
     if (language != LQ_WGSL) fputs("\n#endif\n", out);
 }
 
+lq_status lq_atlas_source_text(lq_language language, const lq_atlas_contents *contents, char **text,
+                               lq_error *error) {
+    size_t size = 0;
+    *text = NULL;
+    FILE *out = open_memstream(text, &size);
+    if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
+    say_all(out, language, contents);
+    if (fclose(out) == 0) return LQ_OK;
+    free(*text);
+    *text = NULL;
+    return lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
+}
+
 lq_status lq_atlas_source_write(lq_language language, const lq_atlas_contents *contents, const char *path,
                                 lq_error *error) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
-    say_all(out, language, contents);
-    lq_status status = fclose(out) == 0 ? lq_output_save(path, text, size, error)
-                                        : lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
+    char *text;
+    lq_status status = lq_atlas_source_text(language, contents, &text, error);
+    if (status == LQ_OK) status = lq_output_save(path, text, strlen(text), error);
     free(text);
     return status;
 }

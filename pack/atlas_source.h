@@ -29,6 +29,10 @@ typedef struct lq_atlas_contents {
 lq_status lq_atlas_source_write(lq_language language, const lq_atlas_contents *contents, const char *path,
                                 lq_error *error);
 
+/* The same as text; free() it. */
+lq_status lq_atlas_source_text(lq_language language, const lq_atlas_contents *contents, char **text,
+                               lq_error *error);
+
 /* Fetches of the function of a table, at most, and of a material. */
 size_t lq_atlas_table_fetches(const lq_atlas_table *table);
 size_t lq_atlas_material_fetches(const lq_atlas_material *material);

@@ -11,6 +11,8 @@
  * program knows. */
 #define LQ_MANIFEST    "manifest.json"
 #define LQ_PACK_FORMAT "lacquer-pack"
+/* And of the page that packs with materials have. */
+#define LQ_PACK_PAGE "index.html"
 enum { LQ_PACK_VERSION = 1, LQ_PACK_FILE_NAME = 256 };
 
 typedef struct lq_pack_file {

@@ -422,7 +422,7 @@ typedef struct choice {
     int map[LQ_LOBES_AXES];
 } choice;
 
-/* The lobes with these texels. */
+/* The lobes with these texels; `budget` NULL: of float32, not judged. */
 static lq_status try_choice(lq_lobes *l, const samples *s, const choice *c, const lq_lobes_budget *budget,
                             double *share, lq_error *error) {
     trial t = {.samples = s, .lobes = l};
@@ -436,9 +436,10 @@ static lq_status try_choice(lq_lobes *l, const samples *s, const choice *c, cons
     if (status == LQ_OK && !allocate(&t)) status = lq_fail(error, LQ_NO_MEMORY, "no memory for texels");
     for (int ch = 0; ch < l->channel_count && status == LQ_OK; ch++) fit_channel(&t, ch);
     if (status == LQ_OK) fill_borders(l);
-    if (status == LQ_OK) status = lq_image_to_half(&l->image, "a material", error);
-    for (int ch = 0; ch < l->channel_count && status == LQ_OK; ch++) decode_channel(&t, ch);
-    if (status == LQ_OK) *share = judge(&t, budget->p99, &l->max);
+    l->image.single = budget == NULL;
+    if (status == LQ_OK && budget) status = lq_image_to_half(&l->image, "a material", error);
+    for (int ch = 0; ch < l->channel_count && status == LQ_OK && budget; ch++) decode_channel(&t, ch);
+    if (status == LQ_OK && budget) *share = judge(&t, budget->p99, &l->max);
     release(&t);
     return status;
 }
@@ -520,6 +521,20 @@ lq_status lq_lobes_make(lq_lobes *lobes, const lq_baked *baked, const lq_lobes_b
     if (status == LQ_OK && lobes->channel_count > 0) status = search(lobes, &s, budget, error);
     free_samples(&s);
     if (status != LQ_OK && status != LQ_NOT_CONVERGED) lq_lobes_free(lobes);
+    return status;
+}
+
+lq_status lq_lobes_make_fine(lq_lobes *lobes, const lq_baked *baked, lq_error *error) {
+    static const choice fine[] = {
+        {{64, 1, 1}, {1, 1, 1}}, {{64, 32, 1}, {1, 1, 1}}, {{48, 12, 12}, {1, 1, 1}}};
+    samples s;
+    *lobes = (lq_lobes){.material = baked->material, .axis_count = 1 + baked->material->range_count};
+    lq_status status = take_samples(&s, baked, error);
+    if (status == LQ_OK) choose_channels(lobes, &s, 1e-6);
+    if (status == LQ_OK && lobes->channel_count > 0)
+        status = try_choice(lobes, &s, &fine[baked->material->range_count], NULL, NULL, error);
+    free_samples(&s);
+    if (status != LQ_OK) lq_lobes_free(lobes);
     return status;
 }
 

@@ -37,6 +37,8 @@ void lq_lobes_cosines(double mu[LQ_LOBES_COSINES]);
 /* LQ_NOT_CONVERGED: 64 texels an axis do not keep the budget; these are there. */
 lq_status lq_lobes_make(lq_lobes *lobes, const lq_baked *baked, const lq_lobes_budget *budget,
                         lq_error *error);
+/* Many texels in float32, for a reference: 64 cosines and 32 values a range (12 of each of two). */
+lq_status lq_lobes_make_fine(lq_lobes *lobes, const lq_baked *baked, lq_error *error);
 void lq_lobes_free(lq_lobes *lobes);
 
 /* Its image, all 0, for axes and channels that are set: for a reader. */

@@ -23,6 +23,7 @@ typedef struct lq_packed_material {
     const lq_recipe_material *from;
     char name[LQ_NAME_SIZE]; /* as an identifier */
     lq_lobes lobes;
+    lq_lobes reference; /* float texels, many: what a page compares with */
     lq_lobes_measure measure;
 } lq_packed_material;
 
@@ -40,6 +41,9 @@ lq_status lq_packing_place(lq_packing *packing, lq_error *error);
 /* The decode source in one language. LQ_BAD_INPUT: one that needs an atlas, without one. */
 lq_status lq_packing_source(const lq_packing *packing, lq_language language, const char *path,
                             lq_error *error);
+/* The same of a pack with an atlas, as text; free() it. */
+lq_status lq_packing_source_text(const lq_packing *packing, lq_language language, char **text,
+                                 lq_error *error);
 /* Of all textures, as a GPU holds them. */
 size_t lq_packing_bytes(const lq_packing *packing);
 void lq_packing_free(lq_packing *packing);

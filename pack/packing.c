@@ -2,7 +2,9 @@
 #include "pack/manifest.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "system/output.h"
 #include "system/status.h"
 
 int lq_packing_languages(const lq_recipe *recipe) {
@@ -28,30 +30,39 @@ lq_status lq_packing_place(lq_packing *p, lq_error *error) {
     return status == LQ_OK ? lq_atlas_make(&p->atlas, error) : status;
 }
 
-static lq_status write_atlas(const lq_packing *p, lq_language language, const lq_source_table *sources,
-                             const char *path, lq_error *error) {
-    const lq_recipe *recipe = p->recipe;
-    lq_atlas_table tables[LQ_RECIPE_TABLES];
-    lq_atlas_material materials[LQ_RECIPE_MATERIALS];
-    for (size_t i = 0; i < recipe->count; i++) tables[i] = (lq_atlas_table){sources[i], p->tiles[i]};
-    for (size_t i = 0; i < recipe->material_count; i++)
-        materials[i] =
-            (lq_atlas_material){p->materials[i].name, &p->materials[i].lobes, p->tiles[recipe->count + i]};
-    const lq_atlas_contents contents = {&p->atlas, recipe->count, recipe->material_count, tables, materials};
-    return lq_atlas_source_write(language, &contents, path, error);
-}
-
-lq_status lq_packing_source(const lq_packing *p, lq_language language, const char *path, lq_error *error) {
-    lq_source_table tables[LQ_RECIPE_TABLES];
+static void list_sources(const lq_packing *p, lq_source_table *tables) {
     for (size_t i = 0; i < p->recipe->count; i++) {
         const lq_packed *table = &p->tables[i];
         tables[i] =
             (lq_source_table){table->from->kind, table->factored ? NULL : &table->texture, &table->factors};
     }
-    if (p->recipe->atlas) return write_atlas(p, language, tables, path, error);
-    if ((int)language < LQ_SOURCE_LANGUAGES)
-        return lq_source_write(language, tables, p->recipe->count, path, error);
-    return lq_fail(error, LQ_BAD_INPUT, "%s: this language is for packs with an atlas", path);
+}
+
+lq_status lq_packing_source_text(const lq_packing *p, lq_language language, char **text, lq_error *error) {
+    const lq_recipe *recipe = p->recipe;
+    lq_source_table sources[LQ_RECIPE_TABLES];
+    lq_atlas_table tables[LQ_RECIPE_TABLES];
+    lq_atlas_material materials[LQ_RECIPE_MATERIALS];
+    list_sources(p, sources);
+    for (size_t i = 0; i < recipe->count; i++) tables[i] = (lq_atlas_table){sources[i], p->tiles[i]};
+    for (size_t i = 0; i < recipe->material_count; i++)
+        materials[i] =
+            (lq_atlas_material){p->materials[i].name, &p->materials[i].lobes, p->tiles[recipe->count + i]};
+    const lq_atlas_contents contents = {&p->atlas, recipe->count, recipe->material_count, tables, materials};
+    return lq_atlas_source_text(language, &contents, text, error);
+}
+
+lq_status lq_packing_source(const lq_packing *p, lq_language language, const char *path, lq_error *error) {
+    lq_source_table tables[LQ_RECIPE_TABLES];
+    char *text = NULL;
+    if ((int)language >= lq_packing_languages(p->recipe))
+        return lq_fail(error, LQ_BAD_INPUT, "%s: this language is for packs with an atlas", path);
+    list_sources(p, tables);
+    if (!p->recipe->atlas) return lq_source_write(language, tables, p->recipe->count, path, error);
+    lq_status status = lq_packing_source_text(p, language, &text, error);
+    if (status == LQ_OK) status = lq_output_save(path, text, strlen(text), error);
+    free(text);
+    return status;
 }
 
 size_t lq_packing_bytes(const lq_packing *p) {

@@ -25,7 +25,7 @@ run 0 pack four.json -o pack
 says '^gold +[0-9]+ '
 says '^white +0 '
 says '^the atlas +[0-9]+$'
-[ "$(ls pack | tr '\n' ' ')" = "atlas.h atlas.ktx2 atlas.npy decode.glsl decode.h decode.hlsl decode.metal decode.vulkan.glsl decode.wgsl manifest.json " ] ||
+[ "$(ls pack | tr '\n' ' ')" = "atlas.h atlas.ktx2 atlas.npy decode.glsl decode.h decode.hlsl decode.metal decode.vulkan.glsl decode.wgsl index.html manifest.json " ] ||
     fail "the pack holds $(ls pack)"
 [ "$(stat -c %s pack/atlas.ktx2)" -lt 12000 ] || fail "an atlas of $(stat -c %s pack/atlas.ktx2) bytes"
 run 0 pack four.json -o again --threads 1

@@ -90,6 +90,12 @@ static lq_status measure(fitting *f, size_t *left, lq_error *error) {
     return status;
 }
 
+static lq_status refer(void *user, size_t i, int thread, lq_error *error) {
+    (void)thread;
+    const fitting *f = user;
+    return lq_lobes_make_fine(&f->packing->materials[i].reference, &f->baked[i], error);
+}
+
 static lq_status fit_all(fitting *f, lq_error *error) {
     const size_t count = f->packing->recipe->material_count;
     size_t left = count;
@@ -129,8 +135,11 @@ lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
     }
     if (status == LQ_OK) status = bake(r, recipe, &f.budget, materials, baked, error);
     if (status == LQ_OK) status = fit_all(&f, error);
-    /* The lobes point to a material that stays. */
-    for (size_t i = 0; i < count; i++) packing->materials[i].lobes.material = &recipe->materials[i].material;
+    if (status == LQ_OK) status = lq_parallel(count, (int)r->threads, refer, &f, NULL, error);
+    for (size_t i = 0; i < count; i++) { /* which point to a material that goes */
+        packing->materials[i].lobes.material = &recipe->materials[i].material;
+        packing->materials[i].reference.material = &recipe->materials[i].material;
+    }
     for (size_t i = 0; baked && i < count; i++) lq_baked_free(&baked[i]);
     free(materials);
     free(baked);

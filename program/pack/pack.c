@@ -3,6 +3,7 @@
 
 #include "pack/cache.h"
 #include "pack/folder.h"
+#include "pack/page.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/progress.h"
@@ -96,6 +97,11 @@ static lq_status write_files(const lq_packing *packing, const char *folder, lq_e
     if (status == LQ_OK && recipe->atlas)
         status = write_image(recipe, &packing->atlas.image, "atlas", "lacquer_atlas_texels", folder, error);
     if (status == LQ_OK) status = write_sources(packing, folder, error);
+    if (status == LQ_OK && recipe->material_count > 0) {
+        char path[PATH_MAX + 64];
+        snprintf(path, sizeof path, "%s/" LQ_PACK_PAGE, folder);
+        status = lq_pack_page_write(packing, path, error);
+    }
     return status == LQ_OK ? lq_manifest_write(packing, folder, error) : status;
 }
 
