@@ -285,7 +285,11 @@ size_t lq_lobes_pitch(const lq_lobes *l) {
 static void fit_channel(trial *t, int channel) {
     const samples *s = t->samples;
     const int number = number_of(t->lobes, channel);
-    double *from = t->scratch[0], *to = t->scratch[1];
+    double *from = t->scratch[0], *to = t->scratch[1], low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < sample_count(s); i++) { /* a fit may overshoot what is physical */
+        low = fmin(low, s->numbers[i * LQ_MATERIAL_NUMBERS + (size_t)number]);
+        high = fmax(high, s->numbers[i * LQ_MATERIAL_NUMBERS + (size_t)number]);
+    }
     for (size_t i = 0; i < sample_count(s); i++)
         from[i] = s->numbers[i * LQ_MATERIAL_NUMBERS + (size_t)number];
     size_t inner = 1, outer = s->count[1] * s->count[2];
@@ -297,7 +301,8 @@ static void fit_channel(trial *t, int channel) {
         from = to;
         to = swap;
     }
-    for (size_t i = 0; i < texel_count(t->lobes); i++) *texel_of(t->lobes, i, channel) = (float)from[i];
+    for (size_t i = 0; i < texel_count(t->lobes); i++)
+        *texel_of(t->lobes, i, channel) = (float)fmin(fmax(from[i], low), high);
 }
 
 static void decode_channel(trial *t, int channel) {

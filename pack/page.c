@@ -163,17 +163,18 @@ static void put_function(FILE *out, const lq_packed_material *m) {
 }
 
 static void put_functions(FILE *out, const lq_packing *packing) {
-    fputs(
-        "<h2 class=\"apart\">Functions</h2>\n<div class=\"wide\"><table>\n<tr><th>function</th><th>ranges</th><th>bytes</th>"
-        "<th>fetches</th><th>p99</th><th>max</th><th>worst at</th><th>constants from</th></tr>\n",
-        out);
+    fputs("<h2 class=\"apart\">Functions</h2>\n<div "
+          "class=\"wide\"><table>\n<tr><th>function</th><th>ranges</th><th>bytes</th>"
+          "<th>fetches</th><th>p99</th><th>max</th><th>worst at</th><th>constants from</th></tr>\n",
+          out);
     for (size_t i = 0; i < packing->recipe->material_count; i++) put_function(out, &packing->materials[i]);
     fputs("</table></div>\n", out);
 }
 
 static void put_use(FILE *out, const lq_packing *packing) {
     const lq_packed_material *m = &packing->materials[0];
-    fputs("<h2 class=\"apart\">How to use it</h2>\n<p>Bind the texture <code>atlas</code> with linear filtering, clamped, "
+    fputs("<h2 class=\"apart\">How to use it</h2>\n<p>Bind the texture <code>atlas</code> with linear "
+          "filtering, clamped, "
           "without mip "
           "levels; include the source of your language; ask at the cosine of the "
           "view.</p>\n<pre>LacquerLobes lobes = ",

@@ -19,7 +19,7 @@ enum { POINTS = 2000, LEAST_POINTS = 100, MOST_POINTS = 1000000 };
 static const char root_keys[] =
     "name, about, ndf, formats, atlas, budget, points, max-bytes, tables, materials";
 static const char table_keys[] =
-    "table, mapping, name, axes, ndf, tolerance, scattering, masking, budget, points, layouts, pca";
+    "table, mapping, name, axes, ndf, tolerance, scattering, masking, budget, points, layouts, fit, pca";
 static const char budget_keys[] = "p99, max";
 
 static lq_status read_budget(const lq_recipe_reader *r, json_t *object, double *p99, double *max) {
@@ -162,6 +162,19 @@ static lq_status read_settings(const lq_recipe_reader *r, json_t *item, lq_recip
     return LQ_OK;
 }
 
+static lq_status read_fit(const lq_recipe_reader *r, json_t *item, lq_recipe_table *table) {
+    json_t *fit = json_object_get(item, "fit");
+    if (fit && !json_is_boolean(fit)) return lq_refuse_value(r, "fit", "true or false");
+    table->fit = json_is_true(fit);
+    if (table->fit && (table->factored || lq_is_mapping(table->kind)))
+        return lq_refuse(r, "fit",
+                         "'fit' is for a table in one texture; leave it out of factors and mappings");
+    if (table->fit && json_object_get(item, "layouts"))
+        return lq_refuse(r, "fit",
+                         "'layouts' hold values at nodes, which a 'fit' changes; accepted: one of the two");
+    return LQ_OK;
+}
+
 static lq_status read_table(const lq_recipe_reader *r, json_t *item, const double *budget, size_t points) {
     lq_recipe_table *table = &r->recipe->tables[r->recipe->count];
     if (!json_is_object(item)) return lq_refuse(r, "tables", "a table is written {\"table\": \"dfg\", ...}");
@@ -177,6 +190,7 @@ static lq_status read_table(const lq_recipe_reader *r, json_t *item, const doubl
     table->factored = pca != NULL;
     if (status == LQ_OK) status = read_axes(r, json_object_get(item, "axes"), table);
     if (status == LQ_OK && pca) status = lq_recipe_read_pca(r, pca, table);
+    if (status == LQ_OK) status = read_fit(r, item, table);
     if (status == LQ_OK) status = read_layouts(r, json_object_get(item, "layouts"), table);
     if (status == LQ_OK) status = read_budget(r, item, &table->p99, &table->max);
     if (status == LQ_OK)
@@ -217,8 +231,8 @@ static lq_status check_names(lq_recipe_reader *r) {
 
 /* Lobes are normalised by the albedo of a single bounce: a scene without tables gets that one. */
 static lq_status add_albedo(lq_recipe_reader *r, const double *budget, size_t points) {
-    json_t *item = json_pack("{s:s, s:f, s:{s:s, s:s}}", "table", "albedo", "tolerance", 1e-4, "axes", "mu",
-                             "0:1:24:sqrt", "alpha", "0:1:24:sqrt");
+    json_t *item = json_pack("{s:s, s:f, s:b, s:{s:s, s:s}}", "table", "albedo", "tolerance", 1e-4, "fit", 1,
+                             "axes", "mu", "0:1:20:sqrt", "alpha", "0:1:16:sqrt");
     if (!item) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
     const lq_status status = read_table(r, item, budget, points);
     json_decref(item);

@@ -16,6 +16,7 @@ typedef struct lq_recipe_table {
     size_t points;             /* where the error is measured, at least */
     int layouts[LQ_LAYOUTS];   /* published binaries to write too */
     int line;                  /* in the recipe's file */
+    bool fit;                  /* texels are fitted to what is between them, too */
     bool factored;             /* then: */
     lq_pca_options pca;        /* how; of a search, where it starts */
     int channel;               /* of the table */

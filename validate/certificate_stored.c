@@ -141,12 +141,20 @@ static lq_status compare_all(stored *s, const lq_block_plan *plan, const lq_susp
     return LQ_OK;
 }
 
+/* Texels that were fitted are as far from their nodes as the fact says. */
+static double fitted_by(const lq_table *table) {
+    const char *fact = lq_table_fact(table, "fit");
+    return fact ? fmax(strtod(fact, NULL), 0.0) : 0.0;
+}
+
 lq_status lq_check_stored(lq_certified *certified, lq_error *error) {
     const lq_subject *subject = &certified->subject;
     const lq_certificate *c = &certified->certificate;
     if (!subject->table) return LQ_OK;
     const double tolerance = subject->origin.settings.tolerance;
-    stored s = {.table = subject->table, .kind = subject->origin.kind, .allowance = tolerance + rounding};
+    stored s = {.table = subject->table,
+                .kind = subject->origin.kind,
+                .allowance = tolerance + rounding + fitted_by(subject->table)};
     s.settings = subject->origin.settings;
     s.curve = subject->curve;
     s.halves = subject->texture.axis_count > 0;

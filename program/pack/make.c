@@ -1,12 +1,15 @@
 /* make.c - the tables of a pack: computed or found in the cache, factored, measured. */
 #include "pack/cache.h"
+#include "pack/fit_texels.h"
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/measure.h"
 #include "program/message.h"
 #include "program/pack/pack.h"
 #include "program/progress.h"
+#include "tables/facts.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -162,11 +165,40 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
 
 /* ------------------------------------------------------------------------------------------ a table */
 
+/* The largest that a fit moved a texel from the value of its node. */
+static double moved_by(const lq_table *before, const lq_table *after) {
+    double most = 0.0;
+    for (int c = 0; c < after->channel_count; c++)
+        for (size_t i = 0; i < lq_table_entries(after); i++)
+            most = fmax(most, fabs((double)after->channels[c][i] - (double)before->channels[c][i]));
+    return most;
+}
+
+/* The table's nodes, and what lies between them: fitted texels, and the fact that they are. */
+static lq_status fit(pack_request *r, lq_packed *packed, lq_error *error) {
+    lq_recipe_table finer = *packed->from;
+    const want whole = {0};
+    lq_table *samples = NULL, *nodes = packed->table;
+    memset(finer.axes, 0, sizeof finer.axes);
+    lq_status status = lq_fit_axes(packed->from->axes, packed->from->kind->axis_count, finer.axes, error);
+    if (status == LQ_OK) status = obtain(r, &finer, &whole, &samples, error);
+    if (status == LQ_OK)
+        status = obtain(r, packed->from, &whole, &packed->table, error); /* a copy of its own */
+    if (status == LQ_OK) status = lq_fit_texels(packed->table, samples, LQ_MEASURE_FROM, error);
+    if (status == LQ_OK)
+        status = lq_table_set_number(packed->table, "fit", moved_by(nodes, packed->table), error);
+    for (int a = 0; a < packed->from->kind->axis_count; a++) lq_axis_free(&finer.axes[a]);
+    lq_table_free(samples);
+    if (packed->table != nodes) lq_table_free(nodes);
+    return status;
+}
+
 static lq_status make_texture(pack_request *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0}, check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
     lq_status status = obtain(r, t, &whole, &packed->table, error);
+    if (status == LQ_OK && t->fit) status = fit(r, packed, error);
     if (status == LQ_OK) status = lq_texture_make(&packed->texture, packed->table, t->name, error);
     if (status == LQ_OK) status = obtain(r, t, &check, &exact, error);
     if (status == LQ_OK)
