@@ -2,11 +2,9 @@
 #include "picture/page_parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "picture/text.h"
-#include "system/output.h"
-#include "system/status.h"
+#include "system/stream.h"
 
 /* ======================================================================================
  *                                  A table too large
@@ -117,13 +115,8 @@ static lq_status put_page(FILE *out, const lq_page *page, lq_error *error) {
 }
 
 lq_status lq_page_write(const lq_page *page, const char *path, lq_error *error) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for a page");
-    lq_status status = put_page(out, page, error);
-    if (fclose(out) != 0 && status == LQ_OK) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a page");
-    if (status == LQ_OK) status = lq_output_save(path, text, size, error);
-    free(text);
-    return status;
+    lq_stream stream;
+    const lq_status opened = lq_stream_open(&stream, path, error);
+    if (opened != LQ_OK) return opened;
+    return lq_stream_close(&stream, put_page(stream.out, page, error), error);
 }

@@ -1,8 +1,8 @@
 /* The SVG plotter: scales and ticks first, then the parts of the page from back to front. */
 #include "tables/plot.h"
 
-#include "system/output.h"
 #include "system/status.h"
+#include "system/stream.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -281,13 +281,8 @@ lq_status lq_plot_draw(const lq_plot *plot, FILE *out, lq_error *error) {
 }
 
 lq_status lq_plot_write(const lq_plot *plot, const char *path, lq_error *error) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for a plot");
-    lq_status status = lq_plot_draw(plot, out, error);
-    if (fclose(out) != 0) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a plot");
-    if (status == LQ_OK) status = lq_output_save(path, text, size, error);
-    free(text);
-    return status;
+    lq_stream stream;
+    const lq_status opened = lq_stream_open(&stream, path, error);
+    if (opened != LQ_OK) return opened;
+    return lq_stream_close(&stream, lq_plot_draw(plot, stream.out, error), error);
 }

@@ -2,14 +2,13 @@
 #include "validate/report.h"
 
 #include "picture/text.h"
-#include "system/output.h"
 #include "system/status.h"
+#include "system/stream.h"
 #include "validate/report_maps.h"
 #include "validate/report_ranks.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -175,17 +174,13 @@ static lq_status put_page(FILE *out, const lq_certified *list, size_t count, lq_
 }
 
 lq_status lq_report_html(const lq_certified *list, size_t count, const char *folder, lq_error *error) {
-    char path[4096], *text = NULL;
-    size_t size = 0;
+    char path[4096];
+    lq_stream stream;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
         return lq_fail(error, LQ_IO, "cannot make the folder '%.300s': %s", folder, strerror(errno));
     if ((size_t)snprintf(path, sizeof path, "%s/index.html", folder) >= sizeof path)
         return lq_fail(error, LQ_BAD_INPUT, "the name of the report's folder is too long");
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for a report");
-    lq_status status = put_page(out, list, count, error);
-    if (fclose(out) != 0) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a report");
-    if (status == LQ_OK) status = lq_output_save(path, text, size, error);
-    free(text);
-    return status;
+    const lq_status opened = lq_stream_open(&stream, path, error);
+    if (opened != LQ_OK) return opened;
+    return lq_stream_close(&stream, put_page(stream.out, list, count, error), error);
 }
