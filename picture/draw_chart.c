@@ -14,8 +14,11 @@ static double x_of(const lq_panel *panel, const lq_box *box, size_t i) {
     return box->x + (panel->x.size > 1 ? box->width * (double)i / (double)(panel->x.size - 1) : 0.0);
 }
 
+/* Curves keep clear of the frame above and below. */
 static double y_of(const lq_panel *panel, const lq_box *box, double value) {
-    return box->y + box->height * (1.0 - (value - panel->low) / (panel->high - panel->low));
+    const double inset = panel->form == LQ_PANEL_LINES ? 6.0 : 0.0;
+    return box->y + inset +
+           (box->height - 2.0 * inset) * (1.0 - (value - panel->low) / (panel->high - panel->low));
 }
 
 static void draw_scale(cairo_t *cr, const lq_panel *panel, const lq_box *box) {
@@ -23,7 +26,7 @@ static void draw_scale(cairo_t *cr, const lq_panel *panel, const lq_box *box) {
     const size_t count = lq_ticks_linear(panel->low, panel->high, 24.0 / box->height, ticks);
     cairo_set_line_width(cr, 1.0);
     for (size_t i = 0; i < count; i++) {
-        const double at = box->y + box->height * (1.0 - ticks[i].at);
+        const double at = y_of(panel, box, ticks[i].value);
         lq_draw_ink(cr, LQ_INK_GRID);
         lq_draw_line(cr, box->x, at, box->x + box->width, at);
         lq_draw_ink(cr, LQ_INK_SOFT);

@@ -102,9 +102,9 @@ static lq_status put_page(FILE *out, const lq_page *page, lq_error *error) {
         lq_page_thin(table, page->start->x, page->start->y, entries, kept);
         put_thinned(out, table, kept);
     }
-    if (!page->start) put_facts(out, figure);
+    if (page->facts_first) put_facts(out, figure);
     fputs("<main id=\"main\"></main>\n<div id=\"panels\"></div>\n", out);
-    if (page->start) put_facts(out, figure);
+    if (!page->facts_first) put_facts(out, figure);
     const lq_status status = put_data(out, page, kept, &shown, error);
     if (!page->start && shown < figure->panel_count)
         fprintf(out,

@@ -12,6 +12,7 @@ enum { LQ_PAGE_BYTES = 1700000 };
 typedef struct lq_page {
     const lq_figure *figure;
     const lq_slice *start; /* of the table shown, and where the reader starts; NULL: panels alone */
+    bool facts_first;      /* the list of facts is what the page is about */
 } lq_page;
 
 /* The file appears whole or not at all. */

@@ -293,14 +293,20 @@ function names(c, panel, p) {
     }
 }
 
+// Where a value of a chart lies; curves keep clear of the frame above and below.
+function placer(panel, p) {
+    const inset = panel.form === 'lines' ? 6 : 0;
+    return v => p.y + inset + (p.height - 2 * inset) * (1 - (v - panel.low) / (panel.high - panel.low));
+}
+
 function drawChart(canvas, panel, ratio) {
     const { c, plot: p } = begin(canvas, ratio, panel.series.length > 1 ? 96 : 20);
     const x = i => p.x + p.width * whereIs(panel.x, i);
-    const y = v => p.y + p.height * (1 - (v - panel.low) / (panel.high - panel.low));
+    const y = placer(panel, p);
     for (const t of ticks(linear(panel.low, panel.high), 26 / p.height)) {
         c.strokeStyle = css('--grid');
-        line(c, p.x, p.y + p.height * (1 - t.at), p.x + p.width, p.y + p.height * (1 - t.at));
-        text(c, t.text, p.x - 8, p.y + p.height * (1 - t.at) + 4, 'right', '--soft');
+        line(c, p.x, y(t.value), p.x + p.width, y(t.value));
+        text(c, t.text, p.x - 8, y(t.value) + 4, 'right', '--soft');
     }
     c.save();
     c.beginPath();
@@ -402,11 +408,11 @@ function drawCurve() {
     const axis = axes[state.along], values = slice(state.along, -1), { low, high } = scaleOf(values);
     const name = table.channels[state.channel];
     curveTitle.textContent = `Along ${axis.name}, through the point`;
-    const p = drawChart(curve, { form: 'lines', series: [name], quantity: name, x: axis, values, low, high }, 0.32);
-    const c = curve.getContext('2d'), y = p.y + p.height * (1 - (lookup(state.u) - low) / (high - low));
+    const panel = { form: 'lines', series: [name], quantity: name, x: axis, values, low, high };
+    const p = drawChart(curve, panel, 0.32), c = curve.getContext('2d');
     c.fillStyle = css('--accent');
     c.beginPath();
-    c.arc(p.x + p.width * state.u[state.along], y, 4, 0, 7);
+    c.arc(p.x + p.width * state.u[state.along], placer(panel, p)(lookup(state.u)), 4, 0, 7);
     c.fill();
 }
 

@@ -27,7 +27,7 @@ static lq_status make_page(const lq_slice *slice, bool whole, const char *path) 
     if (status == LQ_OK) status = lq_figure_tell(figure, "key", "value", NULL);
     if (status == LQ_OK) status = lq_figure_add_slice(figure, slice, NULL);
     if (status == LQ_OK) status = lq_figure_add_slice(figure, slice, NULL);
-    if (status == LQ_OK) status = lq_page_write(&(lq_page){figure, whole ? slice : NULL}, path, NULL);
+    if (status == LQ_OK) status = lq_page_write(&(lq_page){figure, whole ? slice : NULL, false}, path, NULL);
     lq_figure_free(figure);
     return status;
 }

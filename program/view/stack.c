@@ -149,7 +149,7 @@ static lq_status describe_stack(const solved *s, const char *name, lq_figure **f
     lq_status status = lq_stack_text(s->stack, &text, error);
     if (status == LQ_OK)
         status = lq_figure_create(figure, s->stack->name[0] ? s->stack->name : name, text, error);
-    if (status == LQ_OK) status = lq_figure_tell(*figure, "error", estimate, error);
+    if (status == LQ_OK) status = lq_figure_tell(*figure, "error-estimate", estimate, error);
     free(text);
     return status;
 }

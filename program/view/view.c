@@ -97,20 +97,21 @@ static picture_form form_of(const char *path) {
                                      : FORM_NONE;
 }
 
-static int write_picture(const view_request *request, const lq_figure *figure, const lq_slice *slice) {
+static int write_picture(const view_request *request, const lq_page *page) {
     lq_error error = {""};
     const picture_form form = form_of(request->output);
-    const lq_status status =
-        form == FORM_HTML
-            ? lq_page_write(&(lq_page){figure, slice}, request->output, &error)
-            : lq_draw_write(figure, form == FORM_PNG ? LQ_IMAGE_PNG : LQ_IMAGE_SVG, request->output, &error);
+    const lq_status status = form == FORM_HTML
+                                 ? lq_page_write(page, request->output, &error)
+                                 : lq_draw_write(page->figure, form == FORM_PNG ? LQ_IMAGE_PNG : LQ_IMAGE_SVG,
+                                                 request->output, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 
-/* The end of every kind of view; the figure is there unless its making failed. */
-static int finish(const view_request *request, lq_figure *figure, const lq_slice *slice, lq_status made,
+/* The end of every kind of view; the figure is there unless its making failed, and goes. */
+static int finish(const view_request *request, lq_figure *figure, lq_page page, lq_status made,
                   const lq_error *error) {
-    int code = made == LQ_OK || made == LQ_NOT_CONVERGED ? write_picture(request, figure, slice) : CLI_DONE;
+    page.figure = figure;
+    int code = made == LQ_OK || made == LQ_NOT_CONVERGED ? write_picture(request, &page) : CLI_DONE;
     if (made != LQ_OK && code == CLI_DONE) code = cli_fail_status(made, error);
     lq_figure_free(figure);
     return code;
@@ -127,14 +128,14 @@ static int show_table(const view_request *request, const lq_table *table) {
     lq_error error = {""};
     if (!view_slice(request, table, &slice, at)) return CLI_FAILED;
     const lq_status status = view_table(table, &slice, cli_basename(request->input), &figure, &error);
-    return finish(request, figure, &slice, status, &error);
+    return finish(request, figure, (lq_page){.start = &slice}, status, &error);
 }
 
 static int show_factors(const view_request *request, const lq_factored *factored) {
     lq_figure *figure = NULL;
     lq_error error = {""};
     const lq_status status = view_factors(factored, cli_basename(request->input), &figure, &error);
-    return finish(request, figure, NULL, status, &error);
+    return finish(request, figure, (lq_page){0}, status, &error);
 }
 
 static int show_pack(const view_request *request) {
@@ -144,7 +145,7 @@ static int show_pack(const view_request *request) {
         return cli_fail("%s: a folder without manifest.json; accepted: a pack", request->input);
     const lq_status status =
         view_pack(request->input, form_of(request->output) == FORM_HTML, &figure, &error);
-    return finish(request, figure, NULL, status, &error);
+    return finish(request, figure, (lq_page){.facts_first = true}, status, &error);
 }
 
 static int show_stack(const view_request *request) {
@@ -154,7 +155,7 @@ static int show_stack(const view_request *request) {
     lq_status status = lq_stack_read(&stack, request->input, request->trusted ? LQ_STACK_TRUSTED : 0, &error);
     if (status == LQ_OK) status = view_stack(request, stack, &figure, &error);
     lq_stack_free(stack);
-    return finish(request, figure, NULL, status, &error);
+    return finish(request, figure, (lq_page){0}, status, &error);
 }
 
 /* A table of whatever form the mode says. */
