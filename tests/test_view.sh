@@ -117,6 +117,23 @@ text = open("out/p.html", encoding="utf-8").read()
 for t in m["tables"]:
     assert f"{t['"'bytes'"']} bytes, " in text and f"max {t['"'error'"']['"'max'"']:.2g}" in text, t["name"]'
 
+# A scene: the lobes of a material add up to what its stack returns.
+cat >scene.json <<'END_OF_SCENE'
+{"name": "metal", "formats": ["ktx2"], "points": 100, "budget": {"max": 1e-2}, "materials": [
+ {"name": "frosted", "layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}},
+  {"conductor": {"n": 0.2, "kappa": 3.9, "alpha": {"min": 0.05, "max": 0.45}}}]}]}
+END_OF_SCENE
+"$lacquer" pack scene.json -o scene --cache c >/dev/null
+"$lacquer" view scene -o out/m.html
+echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}}, {"conductor": {"n": 0.2, "kappa": 3.9, "alpha": 0.25}}]}' >m.json
+reflected=$("$lacquer" stack m.json --mu 0.25 --format csv | awk -F, 'NR == 2 { print $3 }')
+asked out/m.html "
+panel = p['panels'][0]
+n, v = len(panel['x']['nodes']), floats(panel['values'])
+i = min(range(n), key=lambda k: abs(panel['x']['nodes'][k] - 0.25))
+assert panel['title'] == 'frosted' and panel['caption'].startswith('alpha 0.25 ') and len(v) == 3 * n
+assert abs(panel['x']['nodes'][i] - 0.25) < 1e-12 and abs(sum(v[i::n]) - $reflected) < 1e-2, (sum(v[i::n]), $reflected)"
+
 stack=$source/recipes/stacks/frosted-metal.json
 "$lacquer" view "$stack" -o out/s.svg
 "$lacquer" view "$stack" -o out/s.html

@@ -1,5 +1,5 @@
 /* pack.c - a pack as pictures: every function as a renderer gets it, and what its manifest says of it. */
-#include "program/view/view.h"
+#include "program/view/pack.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "pack/contents.h"
-#include "pack/read.h"
 #include "system/status.h"
 
 /* ======================================================================================
@@ -27,13 +26,19 @@ static json_t *read_manifest(const char *folder, lq_error *error) {
     return root;
 }
 
-static const json_t *table_of(const json_t *manifest, size_t table) {
-    return json_array_get(json_object_get(manifest, "tables"), table);
+/* Entry `i` of "tables" or "materials". */
+static const json_t *entry_of(const json_t *manifest, const char *list, size_t i) {
+    return json_array_get(json_object_get(manifest, list), i);
+}
+
+static size_t bytes_of(const json_t *entry) {
+    const json_int_t bytes = json_integer_value(json_object_get(entry, "bytes"));
+    return bytes > 0 ? (size_t)bytes : 0;
 }
 
 /* "error p99 0.0012, max 0.0039": what was measured when the pack was made. */
-static void describe_error(const json_t *manifest, size_t table, char *text, size_t size) {
-    const json_t *error = json_object_get(table_of(manifest, table), "error");
+static void describe_error(const json_t *entry, char *text, size_t size) {
+    const json_t *error = json_object_get(entry, "error");
     const char *kind = json_string_value(json_object_get(error, "kind"));
     snprintf(
         text, size, "%serror p99 %.2g, max %.2g", kind && strcmp(kind, "relative") == 0 ? "relative " : "",
@@ -41,12 +46,11 @@ static void describe_error(const json_t *manifest, size_t table, char *text, siz
 }
 
 /* ", budget p99 0.002, max 0.01", or nothing. */
-static void describe_budget(const lq_shipped *shipped, char *text, size_t size) {
+static void describe_budget(double p99, double max, char *text, size_t size) {
     text[0] = '\0';
-    if (isfinite(shipped->p99) && isfinite(shipped->max))
-        snprintf(text, size, ", budget p99 %.2g, max %.2g", shipped->p99, shipped->max);
-    else if (isfinite(shipped->p99)) snprintf(text, size, ", budget p99 %.2g", shipped->p99);
-    else if (isfinite(shipped->max)) snprintf(text, size, ", budget max %.2g", shipped->max);
+    if (isfinite(p99) && isfinite(max)) snprintf(text, size, ", budget p99 %.2g, max %.2g", p99, max);
+    else if (isfinite(p99)) snprintf(text, size, ", budget p99 %.2g", p99);
+    else if (isfinite(max)) snprintf(text, size, ", budget max %.2g", max);
 }
 
 /* ======================================================================================
@@ -119,17 +123,12 @@ static lq_status add_slices(lq_figure *figure, const lq_table *table, const char
     return status;
 }
 
-static size_t bytes_of(const json_t *manifest, size_t table) {
-    const json_int_t bytes = json_integer_value(json_object_get(table_of(manifest, table), "bytes"));
-    return bytes > 0 ? (size_t)bytes : 0;
-}
-
 /* The function's line of the page's list. */
 static lq_status tell(lq_figure *figure, const lq_shipped *shipped, size_t bytes, const char *measured,
                       const lq_panel *drawn, lq_error *error) {
     char text[LQ_MESSAGE_SIZE], budget[96];
     const bool changed = shipped->altered + shipped->differing > 0;
-    describe_budget(shipped, budget, sizeof budget);
+    describe_budget(shipped->p99, shipped->max, budget, sizeof budget);
     snprintf(text, sizeof text, "%s%s, %zu bytes, %.3g to %.3g where drawn, %s%s%s%s",
              shipped->kind ? shipped->kind->id : "mapping", shipped->factored ? " in factors" : "", bytes,
              drawn->low, drawn->high, measured, budget, changed ? "; NOT AS IT WAS MADE: " : "",
@@ -137,19 +136,36 @@ static lq_status tell(lq_figure *figure, const lq_shipped *shipped, size_t bytes
     return lq_figure_tell(figure, shipped->name, text, error);
 }
 
-static lq_status add(lq_figure *figure, const lq_shipped *shipped, const json_t *manifest, size_t number,
-                     lq_error *error) {
+static lq_status add(lq_figure *figure, const lq_shipped *shipped, const json_t *entry, lq_error *error) {
     const size_t first = figure->panel_count;
     char measured[128];
     lq_table *decoded = NULL;
-    describe_error(manifest, number, measured, sizeof measured);
+    describe_error(entry, measured, sizeof measured);
     lq_status status = shipped->factored ? decode(shipped, &decoded, error) : LQ_OK;
     if (status == LQ_OK)
         status = add_slices(figure, decoded ? decoded : shipped->table, shipped->name, measured, error);
     if (status == LQ_OK && figure->panel_count > first)
-        status = tell(figure, shipped, bytes_of(manifest, number), measured, &figure->panels[first], error);
+        status = tell(figure, shipped, bytes_of(entry), measured, &figure->panels[first], error);
     lq_table_free(decoded);
     return status;
+}
+
+static lq_status add_material(lq_figure *figure, const lq_shipped_material *shipped, const json_t *entry,
+                              lq_error *error) {
+    char measured[128], budget[96], text[LQ_MESSAGE_SIZE];
+    describe_error(entry, measured, sizeof measured);
+    describe_budget(shipped->lobes.p99, shipped->lobes.max, budget, sizeof budget);
+    snprintf(text, sizeof text, "material, %zu bytes, %s%s", bytes_of(entry), measured, budget);
+    const lq_status status = lq_figure_tell(figure, shipped->name, text, error);
+    return status == LQ_OK ? view_add_material(figure, shipped, measured, error) : status;
+}
+
+/* An atlas, which holds the textures of all. */
+static lq_status check_atlas(lq_figure *figure, const lq_shipped *atlas, lq_error *error) {
+    char text[256];
+    if (atlas->altered + atlas->differing == 0) return LQ_OK;
+    snprintf(text, sizeof text, "NOT AS IT WAS MADE: %s", atlas->suspect);
+    return lq_figure_tell(figure, "atlas", text, error);
 }
 
 /* ======================================================================================
@@ -158,11 +174,28 @@ static lq_status add(lq_figure *figure, const lq_shipped *shipped, const json_t 
 
 static lq_status start(const lq_pack *pack, const json_t *manifest, const char *folder, lq_figure **figure,
                        lq_error *error) {
-    char text[LQ_MESSAGE_SIZE];
-    size_t bytes = 0;
-    for (size_t i = 0; i < pack->count; i++) bytes += bytes_of(manifest, i);
-    snprintf(text, sizeof text, "%zu functions, %zu bytes of textures · %.300s", pack->count, bytes, folder);
+    char text[LQ_MESSAGE_SIZE], materials[48] = "";
+    const json_int_t bytes = json_integer_value(json_object_get(manifest, "texture-bytes"));
+    if (pack->material_count > 0)
+        snprintf(materials, sizeof materials, "%zu material%s, ", pack->material_count,
+                 pack->material_count == 1 ? "" : "s");
+    snprintf(text, sizeof text, "%s%zu function%s, %lld bytes of textures · %.300s", materials, pack->count,
+             pack->count == 1 ? "" : "s", (long long)bytes, folder);
     return lq_figure_create(figure, pack->name, text, error);
+}
+
+/* All that it holds; then, where asked for, what functions are made of. */
+static lq_status fill(lq_figure *figure, const lq_pack *pack, const json_t *manifest, bool factors,
+                      lq_error *error) {
+    lq_status status = check_atlas(figure, &pack->atlas, error);
+    for (size_t i = 0; status == LQ_OK && i < pack->material_count; i++)
+        status = add_material(figure, &pack->materials[i], entry_of(manifest, "materials", i), error);
+    for (size_t i = 0; status == LQ_OK && i < pack->count; i++)
+        status = add(figure, &pack->tables[i], entry_of(manifest, "tables", i), error);
+    for (size_t i = 0; status == LQ_OK && factors && i < pack->count; i++)
+        if (pack->tables[i].factored)
+            status = view_add_factors(figure, pack->tables[i].factored, pack->tables[i].name, error);
+    return status;
 }
 
 lq_status view_pack(const char *folder, bool factors, lq_figure **figure, lq_error *error) {
@@ -171,11 +204,7 @@ lq_status view_pack(const char *folder, bool factors, lq_figure **figure, lq_err
     if (status != LQ_OK) return status;
     json_t *manifest = read_manifest(folder, error);
     status = manifest ? start(&pack, manifest, folder, figure, error) : LQ_FORMAT;
-    for (size_t i = 0; status == LQ_OK && i < pack.count; i++)
-        status = add(*figure, &pack.tables[i], manifest, i, error);
-    for (size_t i = 0; status == LQ_OK && factors && i < pack.count; i++)
-        if (pack.tables[i].factored)
-            status = view_add_factors(*figure, pack.tables[i].factored, pack.tables[i].name, error);
+    if (status == LQ_OK) status = fill(*figure, &pack, manifest, factors, error);
     json_decref(manifest);
     lq_pack_free(&pack);
     return status;
