@@ -190,9 +190,11 @@ static json_t *describe_table(const lq_packing *packing, size_t index, json_t *s
     char function[64];
     snprintf(function, sizeof function, "lacquer_%s",
              packed->factored ? packed->factors.name : texture->name);
-    json_t *table = json_pack("{s:s, s:s, s:s, s:s, s:s, s:I}", "name", from->name, "table", from->kind->id,
-                              "title", from->kind->title, "quantity", from->kind->quantity, "function",
-                              function, "bytes", (json_int_t)lq_packed_bytes(packed));
+    const lq_atlas_table source = {{from->kind, packed->factored ? NULL : texture, &packed->factors}, 0};
+    json_t *table = json_pack("{s:s, s:s, s:s, s:s, s:s, s:I, s:I}", "name", from->name, "table",
+                              from->kind->id, "title", from->kind->title, "quantity", from->kind->quantity,
+                              "function", function, "bytes", (json_int_t)lq_packed_bytes(packed), "fetches",
+                              (json_int_t)lq_atlas_table_fetches(&source));
     if (packed->factored) {
         json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
         json_object_set_new(table, "textures", describe_factors(recipe, packed, sums));

@@ -1,5 +1,7 @@
 /* info.c - `lacquer info`: what a stored table holds and how it was made. */
 #include "lacquer.h"
+#include "pack/read.h"
+#include "program/info_pack.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/verb.h"
@@ -147,6 +149,8 @@ static bool read_arguments(info_request *request, int argc, char **argv) {
 static int run(int argc, char **argv) {
     info_request request = {.layout = -1};
     if (!read_arguments(&request, argc, argv)) return CLI_FAILED;
+    if (request.layout < 0 && lq_pack_found(request.path))
+        return info_pack(request.path, request.format == 1);
     lq_table *table = NULL;
     lq_error error = {""};
     lq_status status = request.layout < 0 ? lq_table_read_exr(&table, request.path, &error)
@@ -166,12 +170,13 @@ static int run(int argc, char **argv) {
 
 const cli_verb cli_verb_info = {
     .name = "info",
-    .summary = "axes, channels and provenance of a stored table",
-    .usage = "FILE [--format text|json] [--layout LAYOUT --kind TABLE]",
+    .summary = "axes, channels and provenance of a stored table; the functions of a pack",
+    .usage = "FILE|DIR [--format text|json] [--layout LAYOUT --kind TABLE]",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .examples = "lacquer info fgd.exr\n"
                 "lacquer info --format json fgd.exr\n"
+                "lacquer info out/scene\n"
                 "lacquer info TIR.bin --layout belcour --kind tir-pass",
     .run = run,
 };

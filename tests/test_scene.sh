@@ -68,6 +68,23 @@ exact() { # LAYERS: energies of the three channels at mu 0.5
 paste -d' ' want.txt got.txt | awk '{h = NF / 2; for (i = 1; i <= h; i++) {d = $i - $(i + h); if (d < 0) d = -d; if (d > 0.004) bad = 1}}
     END {exit bad || NR != 4}' || fail "decoded $(cat got.txt); the exact stack says $(cat want.txt)"
 
+# ------------------------------------------------ as a GPU decodes it, by the program
+"$LACQUER" eval --from pack lacquer_gold mu=0.5 alpha=0.3 | awk '{print $2}' | head -3 | tr '\n' ' ' >program.txt
+awk 'NR == FNR {for (i = 1; i <= 3; i++) want[i] = $i; next} FNR == 1 {for (i = 1; i <= 3; i++) {d = $i - want[i]; if (d < 0) d = -d; if (d > 3e-3) bad = 1}}
+    END {exit bad}' program.txt got.txt || fail "eval --from a pack says $(cat program.txt), its C $(head -1 got.txt)"
+run 0 eval --from pack varnish mu=0.5 alpha=0.2 rho.r=0.5 rho.g=0.25 rho.b=1 --format csv
+says '^mu,alpha,rho.r,rho.g,rho.b,top.r'
+refused "has no function 'silver'; accepted: albedo, gold, red-plastic, varnish, white" eval --from pack silver mu=1
+refused 'alpha = 0.7 is out of range; accepted: 0.1 to 0.5' eval --from pack gold mu=1 alpha=0.7
+refused 'which function of pack' eval --from pack mu=1
+run 0 info pack
+says '^  lacquer_varnish: [0-9]+ bytes, [12] fetch'
+says '^    rho +0 to 1$'
+says '^files: as they were made$'
+run 0 info pack --format json
+python3 -c 'import json; m = json.load(open("out")); assert [f["name"] for f in m["materials"]] == ["gold", "red-plastic", "varnish", "white"]' ||
+    fail "info --format json of a pack"
+
 # ------------------------------------------------ read back
 run 0 validate pack --points 1000
 says '^  passed  varnish '

@@ -32,8 +32,8 @@ static const cli_option options[] = {
     CLI_THREADS_OPTION(eval_request, COMPUTED),
     {OPTION_ORDERS, "orders", "N", "energy after exactly 1, 2, ... N hits instead (fgd only)",
      CLI_COUNT(eval_request, orders, 1, MAX_ORDERS), .modes = COMPUTED},
-    {OPTION_FROM, "from", "FILE", "interpolate a stored table, or factors of pca, instead of computing",
-     CLI_TEXT(eval_request, from)},
+    {OPTION_FROM, "from", "FILE|DIR",
+     "a stored table, factors, or a function of a pack, instead of computing", CLI_TEXT(eval_request, from)},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(eval_request, format, formats)},
     {0},
@@ -63,9 +63,22 @@ static bool read_arguments(eval_request *request, cli_given *given, int argc, ch
  *                                        Source
  * ====================================================================================== */
 
+/* A folder is a pack, whose functions have names. */
+static bool is_pack(const eval_request *request) {
+    return request->from && lq_pack_found(request->from);
+}
+
+/* Words before the point: the table, or the function of a pack. */
+static int names_of(const eval_request *request) {
+    return !request->from || is_pack(request) ? 1 : 0;
+}
+
 static int open_file(const eval_request *request, eval_source *source) {
     lq_error error = {""};
-    lq_status status = eval_source_file(source, request->from, &error);
+    const bool named = request->word_count > 0 && !strchr(request->words[0], '=');
+    lq_status status = is_pack(request)
+                           ? eval_source_pack(source, request->from, named ? request->words[0] : NULL, &error)
+                           : eval_source_file(source, request->from, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 
@@ -103,7 +116,7 @@ static bool read_word(const eval_source *source, const char *word, eval_point *p
 
 static bool read_point(const eval_request *request, const eval_source *source, eval_point *point) {
     lq_error error = {""};
-    for (int i = request->from ? 0 : 1; i < request->word_count; i++)
+    for (int i = names_of(request); i < request->word_count; i++)
         if (!read_word(source, request->words[i], point, &error)) return false;
     if (eval_complete(source, point, &error)) return true;
     cli_message("%s", error.text);
@@ -170,7 +183,7 @@ static int eval_orders(const eval_request *request, const eval_source *source, c
  * ====================================================================================== */
 
 static int eval_request_run(const eval_request *request, const eval_source *source) {
-    bool has_point = request->word_count > (request->from ? 0 : 1);
+    bool has_point = request->word_count > names_of(request);
     if (!has_point && request->format == FORMAT_CSV && request->orders == 0) return eval_csv(source, stdin);
     eval_point point = eval_start(source);
     if (!read_point(request, source, &point)) return CLI_FAILED;
@@ -206,7 +219,8 @@ const cli_verb cli_verb_eval = {
     .summary = "one point, computed exactly, or a CSV of points",
     .usage = "TABLE axis=value... [options]\n"
              "TABLE --format csv [options] < points.csv\n"
-             "--from FILE axis=value... [options]",
+             "--from FILE axis=value... [options]\n"
+             "--from DIR FUNCTION axis=value... [options]",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
@@ -215,6 +229,7 @@ const cli_verb cli_verb_eval = {
                 "lacquer eval albedo mu=0.1 alpha=1 --masking separable --format json\n"
                 "printf 'alpha,mu\\n0.5,0.1\\n0.5,0.9\\n' | lacquer eval albedo --format csv\n"
                 "lacquer eval --from fgd.exr mu=0.3 alpha=0.5 n=0.2 kappa=3.9\n"
-                "lacquer eval --from t01-factors.exr mu=0.3 alpha=0.2 eta=1.5 tau=0.5",
+                "lacquer eval --from t01-factors.exr mu=0.3 alpha=0.2 eta=1.5 tau=0.5\n"
+                "lacquer eval --from out/scene gold mu=0.3 alpha=0.2",
     .run = run,
 };

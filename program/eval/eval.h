@@ -2,7 +2,7 @@
 #ifndef LACQUER_PROGRAM_EVAL_EVAL_H
 #define LACQUER_PROGRAM_EVAL_EVAL_H
 
-#include "lacquer.h"
+#include "pack/read.h"
 
 #include <stdio.h>
 
@@ -15,17 +15,24 @@ typedef struct eval_axis {
     double lowest, highest; /* accepted, inclusive */
 } eval_axis;
 
-/* A table kind, computed exactly; or a stored table, interpolated; or factors, as a GPU filters them. */
+/* A material has three colours of three lobes, and a roughness of each. */
+enum { EVAL_CHANNELS = 12 };
+
+/* A table kind, computed exactly; or a stored table, interpolated; or factors, or a function of a pack, as a
+ * GPU filters them. */
 typedef struct eval_source {
     const lq_kind *kind; /* NULL for a file */
     lq_settings settings;
-    lq_table *table; /* owned; one of these three */
+    lq_table *table; /* owned; one of these five */
     lq_factored *factored;
+    const lq_shipped *shipped; /* of the pack, which is owned */
+    const lq_shipped_material *material;
+    lq_pack *pack;
     const char *path;
     int axis_count;
     eval_axis axes[LQ_MAX_AXES];
     int channel_count;
-    const char *channels[LQ_MAX_CHANNELS];
+    const char *channels[EVAL_CHANNELS];
 } eval_source;
 
 typedef struct eval_point {
@@ -35,7 +42,7 @@ typedef struct eval_point {
 
 typedef struct eval_result {
     lq_status status;
-    double values[LQ_MAX_CHANNELS];
+    double values[EVAL_CHANNELS];
     double estimate; /* of the error; a stored table has none */
     lq_error error;
 } eval_result;
@@ -43,6 +50,8 @@ typedef struct eval_result {
 /* `settings` with their NDF opened, where it is not the default. */
 void eval_source_kind(eval_source *source, const lq_kind *kind, const lq_settings *settings);
 lq_status eval_source_file(eval_source *source, const char *path, lq_error *error);
+/* The function `name` of the pack in a folder: a table's, or a material's. */
+lq_status eval_source_pack(eval_source *source, const char *folder, const char *name, lq_error *error);
 void eval_source_free(eval_source *source);
 
 /* The axis called `name`, or -1 and a message that lists those there are. */
@@ -54,6 +63,9 @@ bool eval_coordinate(const eval_source *source, eval_point *point, int axis, con
 eval_point eval_start(const eval_source *source);
 /* Whether every axis was given; if not, the message names the missing ones. */
 bool eval_complete(const eval_source *source, const eval_point *point, lq_error *error);
+
+/* The channels of a material at mu, its ranges and its albedo. */
+void eval_material(const lq_shipped_material *material, const double *at, double *values);
 
 void eval_compute(const eval_source *source, const lq_settings *settings, const eval_point *point,
                   eval_result *result);
