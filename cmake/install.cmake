@@ -4,6 +4,7 @@ install(TARGETS lacquer-library EXPORT lacquer-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS lacquer-program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY recipes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lacquer/recipes)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lacquer)
 install(EXPORT lacquer-targets NAMESPACE lacquer:: DESTINATION ${package_dir})

@@ -94,6 +94,7 @@ run 2 validate pack --points 1000
 says 'FAILED  files as made'
 
 # ------------------------------------------------ refusals
+refused "no recipe 'scen'; accepted: a JSON file, or one of those shipped: .*dfg, .*scene" pack scen -o none
 bad() { # PATTERN MATERIALS
     echo "{\"name\": \"bad\", \"formats\": [\"ktx2\"], \"materials\": [
 $2]}" >bad.json

@@ -1,4 +1,5 @@
 /* Finds lacquer-fit next to the program, or in libexec where it was installed, and has it solve a problem. */
+#include "program/beside.h"
 #include "program/fit/fit.h"
 #include "program/message.h"
 
@@ -14,15 +15,7 @@ extern char **environ;
 static bool find(char *path, size_t size) {
     static const char *const places[] = {"/lacquer-fit", "/../libexec/lacquer/lacquer-fit",
                                          "/../libexec/lacquer-fit"};
-    char self[PATH_MAX - 64];
-    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-    if (length > 0) self[length] = '\0';
-    char *slash = length > 0 ? strrchr(self, '/') : NULL;
-    if (slash) *slash = '\0';
-    for (int i = 0; slash && i < 3; i++) {
-        snprintf(path, size, "%s%s", self, places[i]);
-        if (access(path, X_OK) == 0) return true;
-    }
+    if (cli_beside(places, 3, X_OK, path, size)) return true;
     cli_message("lacquer-fit was not built: it needs Ceres and a C++ compiler (Debian: apt-get install "
                 "libceres-dev g++), then configure and build again");
     return false;

@@ -39,6 +39,7 @@ static bool read_arguments(pack_request *r, int argc, char **argv) {
     cli_given given;
     if (!cli_parse(&cli_verb_pack, argc, argv, r, take_word, &given)) return false;
     if (!r->recipe_path) return cli_fail("no recipe; usage: lacquer pack RECIPE.json -o DIR"), false;
+    if (!pack_find_recipe(r)) return false;
     if (!r->output) return cli_fail("no output folder; add -o DIR"), false;
     if (r->cache_given) snprintf(r->cache, sizeof r->cache, "%s", r->cache_given);
     else if (!lq_cache_default(r->cache, sizeof r->cache))
@@ -215,6 +216,7 @@ static int run(int argc, char **argv) {
 static void print_notes(FILE *out) {
     fprintf(
         out,
+        "A NAME is that of a shipped recipe or scene: realtime, dfg, scene.\n"
         "DIR gets the texture of each table, or those of its factors, in every format asked for, decode\n"
         "source in GLSL, HLSL and C, and " LQ_MANIFEST ": how each file was made and the error it was\n"
         "measured to have, with half storage and 8-bit filter weights. DIR is complete or untouched.\n"
@@ -224,11 +226,12 @@ static void print_notes(FILE *out) {
 const cli_verb cli_verb_pack = {
     .name = "pack",
     .summary = "from a recipe to a folder of textures an engine loads",
-    .usage = "RECIPE.json [options] -o DIR",
+    .usage = "RECIPE.json|NAME [options] -o DIR",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
-    .examples = "lacquer pack recipes/realtime.json -o realtime\n"
+    .examples = "lacquer pack scene -o out/scene\n"
+                "lacquer pack recipes/realtime.json -o realtime\n"
                 "lacquer pack recipes/dfg.json -o textures --cache ~/tables",
     .run = run,
 };
