@@ -52,8 +52,10 @@ vec3 room(vec3 d, float alpha) {
 }
 vec3 lit(LacquerLobes l, vec3 n, vec3 v, vec3 direct) {
     vec3 r = reflect(-v, n);
-    vec3 around = l.top * room(r, l.top_alpha) + l.inner * room(r, l.inner_alpha) + l.base * room(n, 1.0);
-    return furnace > 0.5 ? around : around + 1.6 * direct;
+    vec3 around = l.top * room(r, l.top_alpha) + 1.6 * direct;
+    if (dot(l.inner, vec3(1.0)) > 0.0) around += l.inner * room(r, l.inner_alpha);
+    if (dot(l.base, vec3(1.0)) > 0.0) around += l.base * room(n, 1.0);
+    return around;
 }
 vec3 shown(vec3 x) { return pow(clamp(x, 0.0, 1.0), vec3(1.0 / 2.2)); }
 vec3 soft(vec3 x) { return furnace > 0.5 ? x : x / (1.0 + 0.35 * x); }
@@ -64,12 +66,20 @@ void main() {
     float mu = n.z, light = dot(n, towards);
     vec3 there = room(normalize(vec3(p * 0.55, -1.0)), 0.25);
     if (dot(p, p) > 1.0) { colour = vec4(panel > 1.5 ? vec3(0.0) : shown(soft(there)), 1.0); return; }
-    LacquerLobes a = lacquer_CALL(atlas, mu ARGUMENTS), b = exact_CALL(exact, mu ARGUMENTS);
-    vec3 one = lit(a, n, v, light > 0.0 ? lacquer_shade(atlas, a, mu, light, max(dot(n, h), 0.0)) : vec3(0.0));
-    vec3 two = lit(b, n, v, light > 0.0 ? exact_shade(exact, b, mu, light, max(dot(n, h), 0.0)) : vec3(0.0));
-    // Differences are of energies, which the budget is about, whatever the room shines with.
-    vec3 off = abs(a.top - b.top) + abs(a.inner - b.inner) + abs(a.base - b.base);
-    colour = vec4(panel > 1.5 ? 10.0 * off : shown(soft(panel > 0.5 ? two : one)), 1.0);
+    float half_cosine = max(dot(n, h), 0.0);
+    if (panel < 0.5) {
+        LacquerLobes a = lacquer_CALL(atlas, mu ARGUMENTS);
+        vec3 direct = light > 0.0 && furnace < 0.5 ? lacquer_shade(atlas, a, mu, light, half_cosine) : vec3(0.0);
+        colour = vec4(shown(soft(lit(a, n, v, direct))), 1.0);
+    } else if (panel < 1.5) {
+        LacquerLobes b = exact_CALL(exact, mu ARGUMENTS);
+        vec3 direct = light > 0.0 && furnace < 0.5 ? exact_shade(exact, b, mu, light, half_cosine) : vec3(0.0);
+        colour = vec4(shown(soft(lit(b, n, v, direct))), 1.0);
+    } else {
+        // Of energies, which the budget is about, whatever the room shines with.
+        LacquerLobes a = lacquer_CALL(atlas, mu ARGUMENTS), b = exact_CALL(exact, mu ARGUMENTS);
+        colour = vec4(10.0 * (abs(a.top - b.top) + abs(a.inner - b.inner) + abs(a.base - b.base)), 1.0);
+    }
 }`;
 
 function compile(type, source) {
