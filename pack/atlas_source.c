@@ -58,7 +58,7 @@ static void say_fetch(FILE *out, lq_language language, const lq_image *atlas) {
         [LQ_HLSL] = "atlas.SampleLevel(linear_clamp, float2(x, y), 0.0)",
         [LQ_VULKAN] = "textureLod(sampler2D(atlas, linear_clamp), vec2(x, y), 0.0)",
         [LQ_WGSL] = "textureSampleLevel(atlas, linear_clamp, vec2f(x, y), 0.0)",
-        [LQ_METAL] = "atlas.sample(linear_clamp, float2(x, y), metal::level(0.0f))",
+        [LQ_METAL] = "atlas.sample(linear_clamp, metal::float2(x, y), metal::level(0.0f))",
     };
     fputs("/* A tile: its first texel x and y, its texels less one z and w; u and v in [0,1] are its outer "
           "texels. */\n",

@@ -48,23 +48,26 @@ static const char base_text[] = "\n/* Through the layers to a base of albedo rho
 
 /* The lobe that the roughnesses are for. */
 static const char shade_text[] =
-    "\n/* The GGX lobe D G2 / (4 mu_in), a BRDF times the cosine mu_out, cos_h that of the half vector. */\n"
+    "\n/* The GGX lobe D G2 / (4 mu_in), a BRDF times the cosine mu_out, cos_h that of the half vector; 0 "
+    "for light "
+    "from\n * below. 1 - cos_h^2 is written so that a narrow lobe keeps its digits. */\n"
     "$(1 lacquer_lobe|1 mu_in|1 mu_out|1 cos_h|1 alpha$)\n{\n"
     "    $=1 a2 = @max(alpha * alpha, 1e-7$f);\n"
-    "    $=1 d = cos_h * cos_h * (a2 - 1.0$f) + 1.0$f;\n"
+    "    $=1 d = cos_h * cos_h * a2 + @max((1.0$f - cos_h) * (1.0$f + cos_h), 0.0$f);\n"
     "    $=1 i = @max(mu_in, 1e-4$f);\n"
-    "    $=1 o = @max(mu_out, 1e-4$f);\n"
-    "    $=1 si = @sqrt(a2 + (1.0$f - a2) * i * i) / i;\n"
-    "    $=1 so = @sqrt(a2 + (1.0$f - a2) * o * o) / o;\n"
-    "    return a2 / (3.14159265$f * d * d) * 2.0$f / (si + so) / (4.0$f * i);\n}\n"
+    "    $=1 o = @max(mu_out, 0.0$f);\n"
+    "    $=1 si = @sqrt(a2 + (1.0$f - a2) * i * i);\n"
+    "    $=1 so = @sqrt(a2 + (1.0$f - a2) * o * o);\n"
+    "    return a2 / (3.14159265$f * d * d) * o / (2.0$f * (o * si + i * so));\n}\n"
     "\n/* All lobes of a material together: BRDF times the cosine of the light, from the cosines of the view "
     "(the\n"
     " * one that the lobes were asked for), the light and the half vector to the normal. */\n"
     "$(3 lacquer_shade|A|L lobes|1 mu_view|1 mu_light|1 cos_h$)\n{\n"
+    "    $=1 mu = @clamp(mu_view, 0.0$f, 1.0$f);\n"
     "    $=1 top = lacquer_lobe(mu_view, mu_light, cos_h, lobes.top_alpha)\n"
-    "        / lacquer_%s($a, mu_view, lobes.top_alpha);\n"
+    "        / lacquer_%s($a, mu, lobes.top_alpha);\n"
     "    $=1 inner = lacquer_lobe(mu_view, mu_light, cos_h, lobes.inner_alpha)\n"
-    "        / lacquer_%s($a, mu_view, lobes.inner_alpha);\n"
+    "        / lacquer_%s($a, mu, lobes.inner_alpha);\n"
     "    $=1 base = lacquer_lobe(1.0$f, mu_light, @sqrt(0.5$f + 0.5$f * mu_light), lobes.base_alpha)\n"
     "        / lacquer_%s($a, 1.0$f, lobes.base_alpha);\n"
     "    return $c3(lobes.top.x * top + lobes.inner.x * inner + lobes.base.x * base,\n"
@@ -75,7 +78,7 @@ static const char magenta_text[] = "\n/* What LACQUER_CHECK makes of an argument
                                    "$(L lacquer_outside$)\n{\n"
                                    "    $~L l;\n"
                                    "    l.top = $c3(%s);\n"
-                                   "    l.inner = $c3(0.0$f, 0.0$f, 0.0$f);\n"
+                                   "    l.inner = $c3(%s);\n"
                                    "    l.base = $c3(%s);\n"
                                    "    l.top_alpha = 1.0$f;\n"
                                    "    l.inner_alpha = 1.0$f;\n"
@@ -102,16 +105,18 @@ static void say_energy(FILE *out, lq_language language, const lq_lobes *lobes, c
 }
 
 static void say_base(FILE *out, lq_language language, const lq_lobes *lobes) {
-    char through[LQ_LITERAL_SIZE], back[LQ_LITERAL_SIZE];
+    char through[LQ_LITERAL_SIZE], back[LQ_LITERAL_SIZE], low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
     if (!lobes->material->open_rho) {
         say_energy(out, language, lobes, "base", LQ_MATERIAL_THROUGH);
         return;
     }
+    lq_literal(lobes->material->rho_min, language, low);
+    lq_literal(lobes->material->rho_max, language, high);
     lq_say(out, language, "    l.base = $c3(");
     for (int c = 0; c < LQ_MATERIAL_COLOURS; c++)
-        fprintf(out, "%slacquer_base(%s, rho.%c, %s)", c > 0 ? ",\n        " : "",
-                number(lobes, LQ_MATERIAL_THROUGH + c, language, through), "xyz"[c],
-                number(lobes, LQ_MATERIAL_BACK + c, language, back));
+        lq_say(out, language, "%slacquer_base(%s, @clamp(rho.%c, %s, %s), %s)", c > 0 ? ",\n        " : "",
+               number(lobes, LQ_MATERIAL_THROUGH + c, language, through), "xyz"[c], low, high,
+               number(lobes, LQ_MATERIAL_BACK + c, language, back));
     fputs(");\n", out);
 }
 
@@ -155,32 +160,41 @@ static void say_fetches(FILE *out, lq_language language, const lq_lobes *lobes, 
     }
 }
 
-static void say_material(FILE *out, lq_language language, const lq_atlas_material *material,
-                         const lq_tile *tiles) {
-    const lq_lobes *lobes = material->lobes;
-    const lq_material *m = lobes->material;
-    lq_check checks[2 + LQ_MATERIAL_RANGES] = {{"mu", 0.0, 1.0}};
-    char head[512], text[LQ_LITERAL_SIZE];
-    int used = snprintf(head, sizeof head, "$(L lacquer_%s|A|1 mu", material->name);
-    const size_t fetches = lq_atlas_material_fetches(material);
-    fprintf(out, "\n/* %s: %zu fetch%s.", material->name, fetches, fetches == 1 ? "" : "es");
+/* What a material takes: the comment, the head of its function and the check of its arguments. */
+static void say_arguments(FILE *out, lq_language language, const lq_material *m, const char *name) {
+    static const char *const rho[LQ_MATERIAL_COLOURS] = {"rho.x", "rho.y", "rho.z"};
+    lq_check checks[1 + LQ_MATERIAL_RANGES + LQ_MATERIAL_COLOURS] = {{"mu", 0.0, 1.0}};
+    size_t count = 1;
+    char head[512];
+    int used = snprintf(head, sizeof head, "$(L lacquer_%s|A|1 mu", name);
     for (int r = 0; r < m->range_count; r++) {
         const lq_material_range *range = &m->ranges[r];
         fprintf(out, "\n *   %s: layer %s, %g to %g", range->name, range->path, range->min, range->max);
-        checks[1 + r] = (lq_check){range->name, range->min, range->max};
+        checks[count++] = (lq_check){range->name, range->min, range->max};
         used += snprintf(head + used, sizeof head - (size_t)used, "|1 %s", range->name);
     }
     if (m->open_rho) {
         fprintf(out, "\n *   rho: albedo of the base, %g to %g", m->rho_min, m->rho_max);
         snprintf(head + used, sizeof head - (size_t)used, "|3 rho");
+        for (int c = 0; c < LQ_MATERIAL_COLOURS; c++)
+            checks[count++] = (lq_check){rho[c], m->rho_min, m->rho_max};
     }
     fputs(" */\n", out);
     lq_say(out, language, "%s$)\n{\n", head);
-    lq_say_check(out, language, checks, 1 + (size_t)m->range_count, "lacquer_outside()");
+    lq_say_check(out, language, checks, count, "lacquer_outside()");
+}
+
+static void say_material(FILE *out, lq_language language, const lq_atlas_material *material,
+                         const lq_tile *tiles) {
+    const lq_lobes *lobes = material->lobes;
+    const size_t fetches = lq_atlas_material_fetches(material);
+    char text[LQ_LITERAL_SIZE];
+    fprintf(out, "\n/* %s: %zu fetch%s.", material->name, fetches, fetches == 1 ? "" : "es");
+    say_arguments(out, language, lobes->material, material->name);
     say_fetches(out, language, lobes, tiles);
     lq_say(out, language, "    $~L l;\n");
     say_energy(out, language, lobes, "top", LQ_MATERIAL_TOP);
-    say_top_alpha(out, language, m);
+    say_top_alpha(out, language, lobes->material);
     say_energy(out, language, lobes, "inner", LQ_MATERIAL_INNER);
     fprintf(out, "    l.inner_alpha = %s;\n", number(lobes, LQ_MATERIAL_INNER_ALPHA, language, text));
     say_base(out, language, lobes);
@@ -197,7 +211,7 @@ void lq_say_lobes(FILE *out, lq_language language, const lq_atlas_contents *cont
     const char *none = language == LQ_C ? bad : "0.0$f, 0.0$f, 0.0$f";
     bool sliced = false;
     say_struct(out, language);
-    lq_say(out, language, magenta_text, bad, none);
+    lq_say(out, language, magenta_text, bad, none, none);
     for (size_t i = 0; i < contents->material_count; i++)
         sliced = sliced || contents->materials[i].lobes->axis_count > 2;
     if (sliced) lq_say(out, language, "%s", slices_text);
