@@ -32,7 +32,7 @@ endforeach()
 # A software GPU for the textures and shaders of a pack; without it those tests are skips.
 pkg_check_modules(EGL IMPORTED_TARGET egl glesv2)
 if(EGL_FOUND)
-  foreach(name test_pack_gl test_pack_gl_shipped)
+  foreach(name test_pack_gl test_pack_gl_shipped test_scene_decode_slow)
     target_link_libraries(${name} PRIVATE PkgConfig::EGL ${CMAKE_DL_LIBS})
     target_compile_definitions(${name} PRIVATE LACQUER_EGL)
   endforeach()

@@ -8,6 +8,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +132,24 @@ static inline void render(const char *fragment, const float *points, float *valu
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_FLOAT, values);
     assert_int_equal(glGetError(), GL_NO_ERROR);
+}
+
+/* ---------------------------------------------------------------- shaders through other tools */
+
+static inline bool have(const char *tool) {
+    char command[64];
+    snprintf(command, sizeof command, "command -v %s >/dev/null 2>&1", tool);
+    return system(command) == 0;
+}
+
+/* spirv-cross names a texture with its sampler "SPIRV_Cross_Combinedunit3linear_clamp": let it start with
+ * unit3. */
+static inline void plain_names(char *text) {
+    static const char before[] = "SPIRV_Cross_Combinedunit";
+    for (char *name; (name = strstr(text, before));)
+        memmove(name, name + sizeof before - 5, strlen(name + sizeof before - 5) + 1);
+    /* What it leaves at the medium precision of ES is a choice of the engine: highp, here. */
+    for (char *p; (p = strstr(text, "mediump"));) memcpy(p, "highp  ", 7);
 }
 
 #endif

@@ -103,12 +103,6 @@ static void run_glsl(const subject *s, float *values) {
     remove(at("decode.glsl"));
 }
 
-static bool have(const char *tool) {
-    char command[64];
-    snprintf(command, sizeof command, "command -v %s >/dev/null 2>&1", tool);
-    return system(command) == 0;
-}
-
 static void run_hlsl(const subject *s, float *values) {
     size_t size;
     lq_error error;
@@ -131,8 +125,7 @@ static void run_hlsl(const subject *s, float *values) {
              folder);
     assert_int_equal(system(command), 0);
     char *text = read_whole(at("h.glsl"), &size);
-    /* What spirv-cross leaves at the medium precision of ES is a choice of the engine: highp, here. */
-    for (char *p; (p = strstr(text, "mediump"));) memcpy(p, "highp  ", 7);
+    plain_names(text);
     render(text, s->points, values);
     free(text);
     static const char *const left[] = {"decode.hlsl", "h.spv", "h.log", "h.glsl"};

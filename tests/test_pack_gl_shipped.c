@@ -193,22 +193,6 @@ static void run_glsl(const table *t, const float *points, float *values) {
     free(text);
 }
 
-static bool have(const char *tool) {
-    char command[64];
-    snprintf(command, sizeof command, "command -v %s >/dev/null 2>&1", tool);
-    return system(command) == 0;
-}
-
-/* spirv-cross names a texture with its sampler "SPIRV_Cross_Combinedunit3linear_clamp": let it start with
- * unit3. */
-static void plain_names(char *text) {
-    static const char before[] = "SPIRV_Cross_Combinedunit";
-    for (char *name; (name = strstr(text, before));)
-        memmove(name, name + sizeof before - 5, strlen(name + sizeof before - 5) + 1);
-    /* What it leaves at the medium precision of ES is a choice of the engine: highp, here. */
-    for (char *p; (p = strstr(text, "mediump"));) memcpy(p, "highp  ", 7);
-}
-
 static void run_hlsl(const table *t, const float *points, float *values) {
     size_t size;
     char command[2000], *source = text_of("decode.hlsl");
