@@ -102,3 +102,36 @@ void lq_texture_sample(const lq_texture *texture, const double *point, int fract
     }
     for (int c = 0; c < texture->channel_count; c++) values[c] = (double)sum[c];
 }
+
+/* The largest second difference along an axis, of the four texels about a cell, of any channel. */
+static double bend(const lq_texture *t, const size_t *below, int axis) {
+    const size_t stride[LQ_TEXTURE_AXES] = {1, t->image.width, t->image.width * t->image.height};
+    const size_t channels = (size_t)t->image.channels, step = stride[axis] * channels,
+                 size = t->axes[axis].size;
+    size_t at = 0;
+    double most = 0.0;
+    if (size < 3) return 0.0;
+    for (int a = 0; a < t->axis_count; a++)
+        if (a != axis) at += stride[a] * below[a];
+    for (size_t middle = below[axis]; middle <= below[axis] + 1; middle++)
+        for (size_t c = 0; c < channels && middle > 0 && middle + 1 < size; c++) {
+            const float *x = &t->image.data[at * channels + middle * step + c];
+            most = fmax(most, fabs((double)x[step] - 2.0 * (double)x[0] + (double)*(x - step)));
+        }
+    return most;
+}
+
+const char *lq_texture_bends(const lq_texture *texture, const double *point) {
+    size_t below[LQ_TEXTURE_AXES] = {0};
+    float weight;
+    const char *found = NULL;
+    double most = 0.0;
+    for (int a = 0; a < texture->axis_count; a++)
+        below[a] = locate(&texture->axes[a], point[texture->from[a]], 0, &weight);
+    for (int a = 0; a < texture->axis_count; a++) {
+        const double b = bend(texture, below, a);
+        if (b > most) found = texture->axes[a].name;
+        most = fmax(most, b);
+    }
+    return found;
+}

@@ -29,4 +29,7 @@ lq_status lq_texture_check(const char *name, const lq_axis *axes, int axis_count
  * of `fraction_bits` bits; 0: exact weights. */
 void lq_texture_sample(const lq_texture *texture, const double *point, int fraction_bits, double *values);
 
+/* The axis along which the texels bend most about a point of the table: where more of them would help. */
+const char *lq_texture_bends(const lq_texture *texture, const double *point);
+
 #endif

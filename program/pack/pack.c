@@ -9,6 +9,7 @@
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/verb.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <omp.h>
@@ -127,45 +128,75 @@ static lq_status write_held(const lq_packing *packing, const char *target, lq_er
 
 /* ------------------------------------------------------------------------------------------- verb */
 
-/* One line of the report, and whether it is within its budget; the first that is not is said. */
-static bool judge_one(const pack_request *r, int line, const char *name, size_t bytes, const double error[3],
-                      const double budget[2], bool silent) {
+/* The budgets that were missed: the first one in words, the others by name. */
+typedef struct misses {
+    size_t count;
+    char first[LQ_MESSAGE_SIZE], others[LQ_MESSAGE_SIZE];
+} misses;
+
+/* One table or material of the report. */
+typedef struct reported {
+    int line;
+    const char *name;
+    size_t bytes;
+    double rms, p99, max, budget_p99, budget_max;
+    const char *axis; /* that bends most where the error is largest; NULL: not known */
+} reported;
+
+static void report_one(const pack_request *r, const reported *one, misses *missed) {
     char asked[64] = "";
-    printf("%-22s %9zu %9.2e %9.2e %9.2e\n", name, bytes, error[0], error[1], error[2]);
-    if (error[1] <= budget[0] && error[2] <= budget[1]) return true;
-    if (silent) return false;
-    if (isfinite(budget[0])) snprintf(asked, sizeof asked, " p99 %.3g", budget[0]);
-    if (isfinite(budget[1])) snprintf(asked + strlen(asked), 32, "%s max %.3g", *asked ? "," : "", budget[1]);
-    cli_message("%s:%d: %s misses its budget: best reached p99 %.3g, max %.3g; asked%s", r->recipe_path, line,
-                name, error[1], error[2], asked);
-    return false;
+    printf("%-22s %9zu %9.2e %9.2e %9.2e\n", one->name, one->bytes, one->rms, one->p99, one->max);
+    if (one->p99 <= one->budget_p99 && one->max <= one->budget_max) return;
+    if (missed->count++ > 0) {
+        lq_list_add(missed->others, sizeof missed->others, one->name);
+        return;
+    }
+    if (isfinite(one->budget_p99)) snprintf(asked, sizeof asked, " p99 %.3g", one->budget_p99);
+    if (isfinite(one->budget_max))
+        snprintf(asked + strlen(asked), 32, "%s max %.3g", *asked ? "," : "", one->budget_max);
+    snprintf(missed->first, sizeof missed->first,
+             "%.200s:%d: %s misses its budget: best reached p99 %.3g, max %.3g; asked%s%s%s", r->recipe_path,
+             one->line, one->name, one->p99, one->max, asked, one->axis ? "; refine " : "",
+             one->axis ? one->axis : "");
+}
+
+static void report_all(const pack_request *r, const lq_packing *packing, misses *missed) {
+    const lq_recipe *recipe = packing->recipe;
+    printf("%-22s %9s %9s %9s %9s\n", "table", "bytes", "rms", "p99", "max");
+    for (size_t i = 0; i < recipe->count; i++) {
+        const lq_packed *p = &packing->tables[i];
+        const lq_measure *m = &p->measure;
+        const reported one = {
+            p->from->line, p->from->name, lq_packed_bytes(p),
+            m->rms,        m->p99,        m->max,
+            p->from->p99,  p->from->max,  p->factored ? NULL : lq_texture_bends(&p->texture, m->worst)};
+        report_one(r, &one, missed);
+    }
+    for (size_t i = 0; i < recipe->material_count; i++) {
+        const lq_packed_material *p = &packing->materials[i];
+        const lq_lobes_measure *m = &p->measure;
+        const reported one = {p->from->line, p->from->name, lq_image_bytes(&p->lobes.image),
+                              m->rms,        m->p99,        m->max,
+                              recipe->p99,   recipe->max,   NULL};
+        report_one(r, &one, missed);
+    }
+    printf("%-22s %9zu\n", recipe->atlas ? "the atlas" : "all textures", lq_packing_bytes(packing));
 }
 
 /* One line a table and a material; exit code 2 and its reason where a budget is missed. */
 static int judge(const pack_request *r, const lq_packing *packing) {
     const lq_recipe *recipe = packing->recipe;
     const size_t bytes = lq_packing_bytes(packing);
-    bool kept = true;
-    printf("%-22s %9s %9s %9s %9s\n", "table", "bytes", "rms", "p99", "max");
-    for (size_t i = 0; i < recipe->count; i++) {
-        const lq_measure *m = &packing->tables[i].measure;
-        const lq_recipe_table *t = packing->tables[i].from;
-        kept &= judge_one(r, t->line, t->name, lq_packed_bytes(&packing->tables[i]),
-                          (double[]){m->rms, m->p99, m->max}, (double[]){t->p99, t->max}, !kept);
+    misses missed = {0};
+    report_all(r, packing, &missed);
+    if (missed.count > 0) {
+        cli_message("%s%s%s", missed.first, missed.count > 1 ? "; so do " : "", missed.others);
+        return CLI_EXCEEDED;
     }
-    for (size_t i = 0; i < recipe->material_count; i++) {
-        const lq_lobes_measure *m = &packing->materials[i].measure;
-        const lq_recipe_material *from = packing->materials[i].from;
-        kept &= judge_one(r, from->line, from->name, lq_image_bytes(&packing->materials[i].lobes.image),
-                          (double[]){m->rms, m->p99, m->max}, (double[]){recipe->p99, recipe->max}, !kept);
-    }
-    printf("%-22s %9zu\n", recipe->atlas ? "the atlas" : "all textures", bytes);
-    if (kept && recipe->max_bytes && bytes > recipe->max_bytes) {
-        cli_message("%s: the textures take %zu bytes; asked are at most %zu", r->recipe_path, bytes,
-                    recipe->max_bytes);
-        kept = false;
-    }
-    return kept ? CLI_DONE : CLI_EXCEEDED;
+    if (recipe->max_bytes == 0 || bytes <= recipe->max_bytes) return CLI_DONE;
+    cli_message("%s: the textures take %zu bytes; asked are at most %zu", r->recipe_path, bytes,
+                recipe->max_bytes);
+    return CLI_EXCEEDED;
 }
 
 /* Every table and material, and all images in one where that is asked for. */
