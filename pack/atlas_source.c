@@ -27,9 +27,8 @@ static const char c_types[] =
     "static inline float lacquer_mix(float a, float b, float t) { return a + (b - a) * t; }\n\n";
 
 static const char *const heads[LQ_LANGUAGES] = {
-    [LQ_GLSL] =
-        "/* In WebGL2: #version 300 es, precision highp float; precision highp sampler2D; before this.\n"
-        " * `atlas` is atlas.*, linear filtering, clamp to edge, no mip levels. */\n",
+    [LQ_GLSL] = "/* In WebGL2 after #version 300 es. `atlas` is atlas.*, linear filtering, clamp to edge, no "
+                "mip levels. */\n",
     [LQ_HLSL] =
         "/* `atlas` is atlas.*, `linear_clamp` a sampler with linear filtering, clamp, no mip levels. */\n",
     [LQ_C] = "/* C99 and C++. `atlas` is the array of the pack's C header, lacquer_atlas_texels. */\n",
@@ -47,6 +46,8 @@ static void say_begin(FILE *out, lq_language language) {
     fputs(heads[language], out);
     if (language == LQ_WGSL) fputs("override LACQUER_CHECK: bool = false;\n\n", out);
     else fputs("#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n", out);
+    if (language == LQ_GLSL)
+        fputs("#ifdef GL_ES\nprecision highp float;\nprecision highp sampler2D;\n#endif\n\n", out);
     if (language == LQ_METAL) fputs("#include <metal_stdlib>\n\n", out);
     if (language == LQ_C) fputs(c_types, out);
 }

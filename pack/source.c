@@ -23,6 +23,8 @@ const char *const *lq_source_helpers(void) {
 static const char glsl_head[] =
     "/* Bind each texture with linear filtering, clamp to edge, no mip levels. */\n"
     "#ifndef LACQUER_DECODE\n#define LACQUER_DECODE\n\n"
+    "#ifdef GL_ES\nprecision highp float;\nprecision highp sampler2D;\nprecision highp sampler3D;\n"
+    "precision highp sampler2DArray;\n#endif\n\n"
     "/* u in [0,1] to where a texture of n texels has it: 0 and 1 are the centres of the outer texels. */\n"
     "float lacquer_texel(float u, float n) { return u * (1.0 - 1.0 / n) + 0.5 / n; }\n";
 

@@ -68,8 +68,8 @@ cat >use.c <<'C'
 #include <stdio.h>
 int main(void) {
     float worst = 0.0f;
-    for (float a = 0.01f; a < 0.8f; a *= 1.1f) worst = fmaxf(worst, fabsf(lacquer_variance_inverse(lacquer_variance(a)) / a - 1.0f));
-    printf("%g %g\n", (double)lacquer_variance(0.237f), (double)worst);
+    for (float a = 0.01f; a < 0.8f; a *= 1.1f) worst = fmaxf(worst, fabsf(lacquer_fitted_variance_inverse(lacquer_fitted_variance(a)) / a - 1.0f));
+    printf("%g %g\n", (double)lacquer_fitted_variance(0.237f), (double)worst);
     return 0;
 }
 C

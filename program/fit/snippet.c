@@ -87,13 +87,14 @@ bool fit_write_snippet(const fit_job *job) {
         status =
             lq_output_print(output, &error,
                             "// lacquer %s: %s of NDF %s, family %s\n// %s\n// relative error on [%g, %g]: "
-                            "rms %.2g, max %.2g\n%s%sfloat lacquer_%s(float x%s) {\n    %s\n}\n",
+                            "rms %.2g, max %.2g\n%s%sfloat lacquer_fitted_%s(float x%s) {\n    %s\n}\n",
                             LQ_VERSION, name, lq_ndf_text(job->ndf), family->name, family->formula,
                             job->request.low, job->request.high, job->errors.rms, job->errors.max,
                             c ? c_head : "", qualifier, name, extra, forward);
     if (status == LQ_OK && body->inverse)
-        status = lq_output_print(output, &error, "\n%sfloat lacquer_%s_inverse(float y%s) {\n    %s\n}\n",
-                                 qualifier, name, extra, inverse);
+        status =
+            lq_output_print(output, &error, "\n%sfloat lacquer_fitted_%s_inverse(float y%s) {\n    %s\n}\n",
+                            qualifier, name, extra, inverse);
     if (status == LQ_OK) status = lq_output_commit(output, &error);
     else lq_output_abandon(output);
     return status == LQ_OK || (cli_fail_status(status, &error), false);
