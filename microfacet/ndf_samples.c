@@ -253,7 +253,8 @@ lq_status lq_ndf_samples_make(const lq_ndf **ndf, const lq_ndf_samples *samples,
                                .areas_below = lq_profiled_areas_below,
                                .slope_quantile = lq_profiled_quantile,
                                .prepare = lq_profiled_prepare,
-                               .release = release};
+                               .release = release,
+                               .pieces = true};
     describe(s, samples->name);
     *ndf = &s->profiled.ndf;
     return LQ_OK;

@@ -25,6 +25,9 @@ typedef struct lq_job {
 typedef struct lq_evaluator {
     const char *id;
     int slice_axis;
+    /* Of the series in the logarithm of the roughness (along.h): coefficient m is this times rho^-m and less.
+     */
+    double series_scale;
     /* Work that all slices share; *state is handed to the others. This and release are NULL where there is
      * none. */
     lq_status (*prepare)(const lq_job *job, void **state, lq_error *error);

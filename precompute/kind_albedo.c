@@ -37,7 +37,7 @@ static lq_status albedo_slice(const lq_job *job, const void *state, size_t index
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_albedo = {"albedo", ALPHA, NULL, albedo_slice, NULL};
+const lq_evaluator lq_evaluate_albedo = {"albedo", ALPHA, 1.0, NULL, albedo_slice, NULL};
 
 /* ------------------------------------------------------------------------ albedo-average */
 
@@ -93,7 +93,7 @@ static lq_status average_slice(const lq_job *job, const void *state, size_t inde
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_albedo_average = {"albedo-average", 0, NULL, average_slice, NULL};
+const lq_evaluator lq_evaluate_albedo_average = {"albedo-average", 0, 1.0, NULL, average_slice, NULL};
 
 /* ----------------------------------------------------------------------------------- dfg */
 
@@ -121,4 +121,4 @@ static lq_status dfg_slice(const lq_job *job, const void *state, size_t index, d
     return LQ_OK;
 }
 
-const lq_evaluator lq_evaluate_dfg = {"dfg", ALPHA, NULL, dfg_slice, NULL};
+const lq_evaluator lq_evaluate_dfg = {"dfg", ALPHA, 1.0, NULL, dfg_slice, NULL};

@@ -84,4 +84,4 @@ static lq_status coated_slice(const lq_job *job, const void *state, size_t index
     return status;
 }
 
-const lq_evaluator lq_evaluate_coated_lambertian = {"coated-lambertian", 1, NULL, coated_slice, NULL};
+const lq_evaluator lq_evaluate_coated_lambertian = {"coated-lambertian", 1, 3.0, NULL, coated_slice, NULL};

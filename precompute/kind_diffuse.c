@@ -98,8 +98,8 @@ static lq_status variance_slice(const lq_job *job, const void *state, size_t ind
     return status;
 }
 
-const lq_evaluator lq_evaluate_diffuse_transmission = {"diffuse-transmission", 1, NULL,
+const lq_evaluator lq_evaluate_diffuse_transmission = {"diffuse-transmission",     1,   0.3, NULL,
                                                        diffuse_transmission_slice, NULL};
-const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection", 1, NULL, diffuse_reflection_slice,
-                                                     NULL};
-const lq_evaluator lq_evaluate_variance = {"variance", 1, NULL, variance_slice, NULL};
+const lq_evaluator lq_evaluate_diffuse_reflection = {"diffuse-reflection",     1,   1.0, NULL,
+                                                     diffuse_reflection_slice, NULL};
+const lq_evaluator lq_evaluate_variance = {"variance", 1, 0.1, NULL, variance_slice, NULL};

@@ -234,5 +234,5 @@ static void release(void *state) {
     free(state);
 }
 
-const lq_evaluator lq_evaluate_tir_pass = {"tir-pass", ALPHA, prepare, slice, release};
-const lq_evaluator lq_evaluate_tir_loss = {"tir-loss", ALPHA, prepare, slice, release};
+const lq_evaluator lq_evaluate_tir_pass = {"tir-pass", ALPHA, 1.0, prepare, slice, release};
+const lq_evaluator lq_evaluate_tir_loss = {"tir-loss", ALPHA, 1.0, prepare, slice, release};

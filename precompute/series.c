@@ -11,6 +11,11 @@ double lq_series_node(const lq_series *s, size_t k) {
     return middle - half * cos(pi * (double)k / (double)(s->nodes - 1));
 }
 
+size_t lq_series_points(double length, double accuracy) {
+    const double s = pi / fmax(length, 1e-3), rho = s + sqrt(1.0 + s * s);
+    return (size_t)fmax(ceil(1.0 - log(accuracy) / log(rho)), LQ_SERIES_MIN);
+}
+
 void lq_series_weights(const lq_series *s, double x, double *weight) {
     double sum = 0.0;
     const size_t last = s->nodes - 1;
@@ -45,4 +50,38 @@ double lq_series_truncation(const lq_series *s, const double *at_node, size_t st
             most = fmax(most, (m == s->nodes - 1 ? 0.5 : 1.0) *
                                   fabs(coefficient(s, at_node + i * step, stride, m)));
     return 2.0 * most;
+}
+
+/* Weights of the nodes in coefficient m. */
+static void coefficient_weights(const lq_series *s, size_t m, double weight[LQ_SERIES_MAX]) {
+    const size_t last = s->nodes - 1;
+    for (size_t k = 0; k <= last; k++) {
+        const double end = k == 0 || k == last ? 0.5 : 1.0;
+        weight[k] = (m == last ? 1.0 : 2.0) / (double)last * end *
+                    cos(pi * (double)((k * m) % (2 * last)) / (double)last);
+    }
+}
+
+static double largest_coefficient(const lq_series *s, const double *const *at_node, size_t count, size_t m) {
+    double weight[LQ_SERIES_MAX], most = 0.0;
+    coefficient_weights(s, m, weight);
+    for (size_t i = 0; i < count; i++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < s->nodes; k++) sum += weight[k] * at_node[k][i];
+        most = fmax(most, fabs(sum));
+    }
+    return most;
+}
+
+double lq_series_missing(const lq_series *s, const double *const *at_node, size_t count) {
+    enum { RUN = 3 };
+    double older = 0.0, newer = 0.0;
+    for (size_t m = s->nodes - 2 * RUN; m < s->nodes; m++) {
+        double *run = m + RUN < s->nodes ? &older : &newer;
+        *run = fmax(*run, largest_coefficient(s, at_node, count, m));
+    }
+    /* What does not fade is the noise of the values, which their own estimates cover: twice the last ones do.
+     */
+    const double fading = older > 0.0 ? fmin(newer / older, 0.25) : 0.0;
+    return 2.0 * RUN * newer * fading / (1.0 - fading);
 }

@@ -4,12 +4,17 @@
 
 #include <stddef.h>
 
-enum { LQ_SERIES_MAX = 64 };
+enum { LQ_SERIES_MIN = 7, LQ_SERIES_MAX = 64 };
 
 typedef struct lq_series {
     size_t nodes; /* 4 to LQ_SERIES_MAX */
     double from, to;
 } lq_series;
+
+/* How many nodes over a length leave out no more than `accuracy` of a function of size 1 whose singularities
+ * lie pi / 2 off the real axis: coefficient m falls like rho^-m, rho + i the sum of half axes of the ellipse
+ * through them (Trefethen 2013, ch. 8). May exceed LQ_SERIES_MAX. */
+size_t lq_series_points(double length, double accuracy);
 
 double lq_series_node(const lq_series *series, size_t k);
 
@@ -20,5 +25,9 @@ void lq_series_weights(const lq_series *series, double x, double *weight);
  * stride + i * step] at node k. From the last three coefficients, one of which may vanish by chance. */
 double lq_series_truncation(const lq_series *series, const double *at_node, size_t stride, size_t step,
                             size_t count);
+
+/* The same from how the last six of them decay, the largest of all values: at_node[k][i] value i at node k.
+ * For functions all of which converge geometrically: it is smaller the faster they do. At least 7 nodes. */
+double lq_series_missing(const lq_series *series, const double *const *at_node, size_t count);
 
 #endif

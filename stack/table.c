@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stack/along.h"
+#include "precompute/along.h"
 #include "stack/description.h"
 #include "stack/level.h"
 #include "system/parallel.h"
@@ -126,9 +126,10 @@ static double missing(const filling *f, int panel) {
     const size_t size = numbers_of(f);
     double most = 0.0;
     for (size_t other = 0; other < f->others; other++)
-        most = fmax(most, lq_series_truncation(&f->along.panel[panel],
-                                               f->solved + (f->along.first[panel] * f->others + other) * size,
-                                               f->others * size, 1, size));
+        most = fmax(most,
+                    lq_series_truncation(&f->along.panel[panel].series,
+                                         f->solved + (f->along.panel[panel].first * f->others + other) * size,
+                                         f->others * size, 1, size));
     return most;
 }
 
@@ -136,7 +137,7 @@ static double missing(const filling *f, int panel) {
 static double settle_panels(filling *f) {
     double most = 0.0;
     for (int p = 0; p < LQ_ALONG_PANELS; p++) {
-        if (!f->along.panel_used[p]) continue;
+        if (!f->along.panel[p].used) continue;
         const double left = missing(f, p);
         if (left > INTERPOLATION * tolerance_of(f)) lq_along_drop(&f->along, p);
         else most = fmax(most, left);
@@ -261,9 +262,9 @@ static lq_status allocate(filling *f, lq_error *error) {
     const lq_axis *axis = f->along_axis < 0 ? NULL : &f->table->axes[f->along_axis];
     bool ok = lq_along_make(&f->along, axis ? axis->nodes : &none, axis ? axis->size : 1,
                             axis && is_roughness(axis));
-    for (int p = 0; p < LQ_ALONG_PANELS; p++) f->interpolates |= f->along.panel_used[p];
+    for (int p = 0; p < LQ_ALONG_PANELS; p++) f->interpolates |= f->along.panel[p].used;
     f->others = lq_table_entries(f->table) / cosines_of(f) / (axis ? axis->size : 1);
-    const size_t most = f->along.size + LQ_ALONG_PANELS * LQ_ALONG_POINTS;
+    const size_t most = f->along.most;
     f->solved = calloc(most * f->others * numbers_of(f) + 1, sizeof *f->solved);
     f->errors = calloc(most * f->others + 1, sizeof *f->errors);
     ok &= f->solved && f->errors;

@@ -1,0 +1,24 @@
+/* Cosine-weighted means between the sweep's own roughnesses and indices. */
+#include "tests/sweep.h"
+
+static void check_both(const char *kind, const char *tau) {
+    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-4, 3});
+    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-3, 3});
+}
+
+static void test_means(void **state) {
+    (void)state;
+    check_both("diffuse-transmission", "0:1:7");
+    check_both("diffuse-reflection", "0:1:7");
+}
+
+static void test_variance(void **state) {
+    (void)state;
+    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-4, 18});
+    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-3, 18});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_means), cmocka_unit_test(test_variance)};
+    return cmocka_run_group_tests_name("sweep-diffuse", tests, NULL, NULL);
+}
