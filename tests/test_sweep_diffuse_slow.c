@@ -2,8 +2,8 @@
 #include "tests/sweep.h"
 
 static void check_both(const char *kind, const char *tau) {
-    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-4, 3});
-    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-3, 3});
+    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-4, 3, 20, LQ_MULTIPLE});
+    sweep_check(&(sweep_case){kind, NULL, {"1:2.5:28", NULL, tau}, 1e-3, 3, 20, LQ_MULTIPLE});
 }
 
 static void test_means(void **state) {
@@ -14,8 +14,8 @@ static void test_means(void **state) {
 
 static void test_variance(void **state) {
     (void)state;
-    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-4, 18});
-    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-3, 18});
+    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-4, 18, 20, LQ_MULTIPLE});
+    sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-3, 18, 20, LQ_MULTIPLE});
 }
 
 int main(void) {
