@@ -43,8 +43,8 @@ struct lq_ndf {
     lq_status (*prepare)(const lq_ndf *ndf, double alpha, lq_error *error);
     void (*release)(lq_ndf *ndf);
     double alpha_min, alpha_max; /* besides 0; 0, 0: all of [0,1]; equal: this NDF has one roughness */
-    bool pieces;                 /* not smooth in alpha: it is put together of pieces */
-    const char *note;            /* what was done to the input, on one line */
+    bool pieces;      /* in alpha, or it is not known: values between roughnesses need not be smooth */
+    const char *note; /* what was done to the input, on one line */
 };
 
 /* The NDFs whose every formula is closed: they need no opening. NULL for any other id. */

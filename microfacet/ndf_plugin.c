@@ -87,6 +87,7 @@ static lq_status start(loaded *l, lq_error *error) {
                                .release = release,
                                .alpha_min = p->alpha_min,
                                .alpha_max = p->alpha_max,
+                               .pieces = true,
                                .note = l->note};
     const lq_status status = lq_ndf_prepare(&l->profiled.ndf, p->alpha_max, error);
     if (status != LQ_OK) return status;

@@ -18,7 +18,7 @@ enum { EDGES = sizeof n_edges / sizeof n_edges[0] };
  *                                        Points
  * ====================================================================================== */
 
-/* The sum of half axes of the ellipse around [from, to] through a singularity (Trefethen 2013, ch. 8). */
+/* The sum of half axes of the ellipse around [from, to] through a singularity (T13, ch. 8). */
 static double ellipse_through(double from, double to, double real, double imaginary) {
     const double half = 0.5 * (to - from);
     const double complex z = (real - 0.5 * (from + to) + imaginary * I) / half, root = csqrt(z * z - 1.0);

@@ -1,4 +1,4 @@
-/* Chebyshev points of the second kind: weights, and what the tail of the series says (Trefethen 2013, ch. 5
+/* Chebyshev points of the second kind: weights, and what the tail of the series says (T13, ch. 5
  * and 8). */
 #include "precompute/series.h"
 
@@ -80,8 +80,8 @@ double lq_series_missing(const lq_series *s, const double *const *at_node, size_
         double *run = m + RUN < s->nodes ? &older : &newer;
         *run = fmax(*run, largest_coefficient(s, at_node, count, m));
     }
-    /* What does not fade is the noise of the values, which their own estimates cover: twice the last ones do.
-     */
-    const double fading = older > 0.0 ? fmin(newer / older, 0.25) : 0.0;
-    return 2.0 * RUN * newer * fading / (1.0 - fading);
+    /* The last run may be small by chance, all of it: three coefficients fade by 8 where rho is 2. What does
+     * not fade is the noise of the values. */
+    const double fading = older > 0.0 ? fmin(fmax(newer / older, 1.0 / 8.0), 1.0) : 1.0;
+    return 2.0 * fading * fmax(newer, older / 8.0);
 }

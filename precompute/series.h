@@ -13,7 +13,7 @@ typedef struct lq_series {
 
 /* How many nodes over a length leave out no more than `accuracy` of a function of size 1 whose singularities
  * lie pi / 2 off the real axis: coefficient m falls like rho^-m, rho + i the sum of half axes of the ellipse
- * through them (Trefethen 2013, ch. 8). May exceed LQ_SERIES_MAX. */
+ * through them (T13, ch. 8). May exceed LQ_SERIES_MAX. */
 size_t lq_series_points(double length, double accuracy);
 
 double lq_series_node(const lq_series *series, size_t k);
@@ -26,8 +26,9 @@ void lq_series_weights(const lq_series *series, double x, double *weight);
 double lq_series_truncation(const lq_series *series, const double *at_node, size_t stride, size_t step,
                             size_t count);
 
-/* The same from how the last six of them decay, the largest of all values: at_node[k][i] value i at node k.
- * For functions all of which converge geometrically: it is smaller the faster they do. At least 7 nodes. */
+/* The same of values that lie apart, at_node[k][i] value i at node k, and of all of them together: from the
+ * largest of the last three coefficients, and of the three before, which might be more by chance. For
+ * functions without kinks: of one it says too little. At least LQ_SERIES_MIN nodes. */
 double lq_series_missing(const lq_series *series, const double *const *at_node, size_t count);
 
 #endif

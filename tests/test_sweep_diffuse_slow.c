@@ -18,7 +18,26 @@ static void test_variance(void **state) {
     sweep_check(&(sweep_case){"variance", NULL, {"1:2.5:28", NULL}, 1e-3, 18, 20, LQ_MULTIPLE});
 }
 
+static void test_coated(void **state) {
+    (void)state;
+    sweep_check(&(sweep_case){"coated-lambertian",
+                              NULL,
+                              {"0:1:5", "0:1:40", "0.8,1.5", "0.1,0.5,1", "0,0.5,1"},
+                              1e-3,
+                              6,
+                              20,
+                              LQ_MULTIPLE});
+    sweep_check(&(sweep_case){"coated-lambertian",
+                              NULL,
+                              {"0:1:5", "0:1:40", "1.5", "0.1,0.5,1", "0,0.5,1"},
+                              3e-3,
+                              12,
+                              20,
+                              LQ_MULTIPLE});
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_means), cmocka_unit_test(test_variance)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_means), cmocka_unit_test(test_variance),
+                                       cmocka_unit_test(test_coated)};
     return cmocka_run_group_tests_name("sweep-diffuse", tests, NULL, NULL);
 }
