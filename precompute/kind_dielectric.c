@@ -53,5 +53,5 @@ static lq_status transmission_slice(const lq_job *job, const void *state, size_t
     return directional_slice(job, index, 1, job->nodes[3], job->size[3], values[0], estimate, error);
 }
 
-const lq_evaluator lq_evaluate_fgd_dielectric = {"fgd-dielectric", 1, 3.0, NULL, fgd_slice, NULL};
+const lq_evaluator lq_evaluate_fgd_dielectric = {"fgd-dielectric", 1, 20.0, NULL, fgd_slice, NULL};
 const lq_evaluator lq_evaluate_transmission = {"transmission", 1, 30.0, NULL, transmission_slice, NULL};
