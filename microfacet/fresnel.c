@@ -48,7 +48,8 @@ static lq_fresnel_singularity nearest_angle(double complex z) {
 }
 
 void lq_fresnel_singularities(double n, double kappa, lq_fresnel_singularity found[2]) {
-    const double complex eps_minus_1 = CMPLX((n - 1.0) * (n + 1.0) - kappa * kappa, 2.0 * n * kappa);
+    const double complex eps_minus_1 = __builtin_complex((n - 1.0) * (n + 1.0) - kappa * kappa,
+                                                         2.0 * n * kappa); /* CMPLX, where clang has none */
     const double complex eps_plus_1 = eps_minus_1 + 2.0;
     found[0] = nearest_angle(csqrt(-eps_minus_1));
     found[1] = nearest_angle(eps_plus_1 != 0.0 ? -1.0 / csqrt(eps_plus_1) : -2.0);

@@ -34,18 +34,18 @@ static void ggx_areas_below(double alpha, size_t count, const double *restrict m
  * coefficients of a cell are loaded as one vector and four of them transposed: gathers cost twice as much. */
 enum { OCTAVE_BLOCK = 16 };
 typedef double octave_v4 __attribute__((vector_size(32)));
-typedef int64_t octave_mask __attribute__((vector_size(32)));
 
 static void cubics_at(const double *restrict cubic, const int64_t *cell, octave_v4 *c) {
     octave_v4 r[4];
     for (int i = 0; i < 4; i++) memcpy(&r[i], cubic + cell[i], sizeof r[i]);
-    const octave_mask low = {0, 4, 2, 6}, high = {1, 5, 3, 7}, first = {0, 1, 4, 5}, second = {2, 3, 6, 7};
-    const octave_v4 a = __builtin_shuffle(r[0], r[1], low), b = __builtin_shuffle(r[0], r[1], high);
-    const octave_v4 d = __builtin_shuffle(r[2], r[3], low), e = __builtin_shuffle(r[2], r[3], high);
-    c[0] = __builtin_shuffle(a, d, first);
-    c[1] = __builtin_shuffle(b, e, first);
-    c[2] = __builtin_shuffle(a, d, second);
-    c[3] = __builtin_shuffle(b, e, second);
+    const octave_v4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);
+    const octave_v4 b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+    const octave_v4 d = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6);
+    const octave_v4 e = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+    c[0] = __builtin_shufflevector(a, d, 0, 1, 4, 5);
+    c[1] = __builtin_shufflevector(b, e, 0, 1, 4, 5);
+    c[2] = __builtin_shufflevector(a, d, 2, 3, 6, 7);
+    c[3] = __builtin_shufflevector(b, e, 2, 3, 6, 7);
 }
 
 static void octaves_values(const lq_octaves *o, double *restrict x, double *restrict value) {

@@ -76,19 +76,29 @@ static inline void raise_change(lq_v8 *most, const lq_v8 *a, const lq_v8 *b) {
     *most = (lq_v8)(((lq_i8)change & greater) | ((lq_i8)*most & ~greater));
 }
 
+/* Even and odd lanes, pairs and fours of v[0] and v[1], added; by address, as vectors wider than the
+ * processor's have no agreed way to be passed. */
+static inline void add_ones(const lq_v8 *v, lq_v8 *sum) {
+    *sum = __builtin_shufflevector(v[0], v[1], 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(v[0], v[1], 1, 9, 3, 11, 5, 13, 7, 15);
+}
+
+static inline void add_twos(const lq_v8 *v, lq_v8 *sum) {
+    *sum = __builtin_shufflevector(v[0], v[1], 0, 1, 8, 9, 4, 5, 12, 13) +
+           __builtin_shufflevector(v[0], v[1], 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+static inline void add_fours(const lq_v8 *v, lq_v8 *sum) {
+    *sum = __builtin_shufflevector(v[0], v[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(v[0], v[1], 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
 /* The sums of the lanes of eight vectors: three rounds of adding halves. */
 static inline void add_lanes(const lq_v8 *v, double *restrict out) {
-    const lq_i8 low1 = {0, 8, 2, 10, 4, 12, 6, 14}, high1 = {1, 9, 3, 11, 5, 13, 7, 15};
-    const lq_i8 low2 = {0, 1, 8, 9, 4, 5, 12, 13}, high2 = {2, 3, 10, 11, 6, 7, 14, 15};
-    const lq_i8 low4 = {0, 1, 2, 3, 8, 9, 10, 11}, high4 = {4, 5, 6, 7, 12, 13, 14, 15};
-    lq_v8 a[4], b[2];
-    for (int i = 0; i < 4; i++)
-        a[i] = __builtin_shuffle(v[2 * i], v[2 * i + 1], low1) +
-               __builtin_shuffle(v[2 * i], v[2 * i + 1], high1);
-    for (int i = 0; i < 2; i++)
-        b[i] = __builtin_shuffle(a[2 * i], a[2 * i + 1], low2) +
-               __builtin_shuffle(a[2 * i], a[2 * i + 1], high2);
-    const lq_v8 total = __builtin_shuffle(b[0], b[1], low4) + __builtin_shuffle(b[0], b[1], high4);
+    lq_v8 a[4], b[2], total;
+    for (int i = 0; i < 4; i++) add_ones(v + 2 * i, a + i);
+    for (int i = 0; i < 2; i++) add_twos(a + 2 * i, b + i);
+    add_fours(b, &total);
     for (int l = 0; l < LQ_LANES; l++) out[l] += total[l];
 }
 
