@@ -32,7 +32,7 @@ typedef enum lq_status {
     LQ_NOT_CONVERGED /* the tolerance was not reached; value and error are still valid */
 } lq_status;
 
-enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 6, LQ_MAX_CHANNELS = 8 };
+enum { LQ_MESSAGE_SIZE = 512, LQ_NAME_SIZE = 32, LQ_MAX_AXES = 6, LQ_MAX_CHANNELS = 8, LQ_MAX_FACTS = 4096 };
 
 typedef struct lq_error {
     char text[LQ_MESSAGE_SIZE]; /* one line, no newline, no trailing stop */
@@ -122,7 +122,8 @@ size_t lq_table_entries(const lq_table *table);
 /* The axis called `name`, or -1. */
 int lq_table_axis(const lq_table *table, const char *name);
 
-/* Set, replace or look up a fact. lq_table_fact returns NULL where there is none. */
+/* Set, replace or look up a fact, of which a table has at most LQ_MAX_FACTS. lq_table_fact returns NULL where
+ * there is none. */
 lq_status lq_table_set_fact(lq_table *table, const char *key, const char *value, lq_error *error);
 const char *lq_table_fact(const lq_table *table, const char *key);
 

@@ -76,8 +76,11 @@ lq_status lq_contents_read(lq_contents *contents, const char *folder, lq_error *
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
     lq_status status = lq_input_read(path, &bytes, &size, error);
     if (status != LQ_OK) return status;
-    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, NULL);
+    json_t *root;
+    status = lq_json_parse(&root, LQ_MANIFEST, bytes, size, error);
     free(bytes);
+    if (status == LQ_NO_MEMORY) return status;
+    status = LQ_OK; /* what is no JSON is no pack's */
     const char *format = json_string_value(json_object_get(root, "format"));
     json_t *version = json_object_get(root, "version"), *files = json_object_get(root, "files");
     if (!format || strcmp(format, LQ_PACK_FORMAT) != 0 || !json_is_integer(version) || !json_is_object(files))

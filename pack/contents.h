@@ -4,8 +4,7 @@
 #define LACQUER_PACK_CONTENTS_H
 
 #include "lacquer.h"
-
-#include <jansson.h>
+#include "system/json.h"
 
 /* The name of every pack's manifest, and what says that it is one: "format", and "version" as far as this
  * program knows. */

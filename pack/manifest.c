@@ -4,11 +4,11 @@
 #include "pack/contents.h"
 #include "pack/source.h"
 #include "pca/factors_json.h"
+#include "system/json.h"
 #include "system/output.h"
 #include "system/status.h"
 #include "tables/exr_layout.h"
 
-#include <jansson.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -66,8 +66,9 @@ static json_t *describe_stem(const lq_recipe *recipe, const char *stem, json_t *
         if (!recipe->containers[c]) continue;
         snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
         json_t *item = json_pack("{s:s, s:s}", "file", name, "format", hints[c]);
-        json_object_set(item, "crc32", json_object_get(sums, name)); /* no such file: left out */
-        json_array_append_new(files, item);
+        json_t *sum = json_object_get(sums, name);
+        if (sum) lq_json_set(&item, "crc32", json_incref(sum));
+        lq_json_append(&files, item);
     }
     return files;
 }
@@ -78,13 +79,12 @@ static json_t *describe_files(const lq_recipe *recipe, const lq_packed *packed, 
     return describe_stem(recipe, stem, sums);
 }
 
-static void add_binaries(const lq_packed *packed, json_t *files) {
+static void add_binaries(const lq_packed *packed, json_t **files) {
     char name[64];
     for (int l = 0; l < LQ_LAYOUTS; l++) {
         if (!packed->from->layouts[l]) continue;
         snprintf(name, sizeof name, "%s.%s.bin", packed->from->name, lq_layout_name((lq_layout)l));
-        json_array_append_new(files,
-                              json_pack("{s:s, s:s}", "file", name, "format", lq_layout_name((lq_layout)l)));
+        lq_json_append(files, json_pack("{s:s, s:s}", "file", name, "format", lq_layout_name((lq_layout)l)));
     }
 }
 
@@ -98,13 +98,13 @@ static json_t *describe_factors(const lq_recipe *recipe, const lq_packed *packed
         char argument[32];
         snprintf(argument, sizeof argument, "t%s", bases->suffix);
         for (int a = 0; a < factor->axis_count; a++)
-            json_array_append_new(axes, describe_axis(&factor->axes[a].texels, a));
-        json_array_append_new(
-            textures, json_pack("{s:s, s:I, s:I, s:I, s:s, s:o, s:o}", "argument", argument, "piece",
-                                (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count, "layers",
-                                (json_int_t)bases->image.layers, "layout",
-                                "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
-                                recipe->atlas ? json_array() : describe_files(recipe, packed, i, sums)));
+            lq_json_append(&axes, describe_axis(&factor->axes[a].texels, a));
+        lq_json_append(&textures,
+                       json_pack("{s:s, s:I, s:I, s:I, s:s, s:o, s:o}", "argument", argument, "piece",
+                                 (json_int_t)bases->piece, "bases", (json_int_t)factor->base_count, "layers",
+                                 (json_int_t)bases->image.layers, "layout",
+                                 "base b in channel b % 4 of layer b / 4", "axes", axes, "files",
+                                 recipe->atlas ? json_array() : describe_files(recipe, packed, i, sums)));
     }
     return textures;
 }
@@ -118,10 +118,10 @@ static json_t *describe_error(const lq_packed *packed) {
                   "exact integral, for mu, alpha, tau >= 0.02");
     json_t *worst = json_object();
     for (int a = 0; a < packed->from->kind->axis_count; a++)
-        json_object_set_new(worst, packed->from->axes[a].name, number(m->worst[a]));
-    json_object_set_new(error, "worst-at", worst);
-    if (isfinite(packed->from->p99)) json_object_set_new(error, "budget-p99", number(packed->from->p99));
-    if (isfinite(packed->from->max)) json_object_set_new(error, "budget-max", number(packed->from->max));
+        lq_json_set(&worst, packed->from->axes[a].name, number(m->worst[a]));
+    lq_json_set(&error, "worst-at", worst);
+    if (isfinite(packed->from->p99)) lq_json_set(&error, "budget-p99", number(packed->from->p99));
+    if (isfinite(packed->from->max)) lq_json_set(&error, "budget-max", number(packed->from->max));
     return error;
 }
 
@@ -132,7 +132,7 @@ static json_t *describe_origin(const lq_packed *packed) {
     json_t *made = json_object();
     for (size_t i = 0; i < count; i++)
         if (strncmp(facts[i].key, "cache", 5) != 0)
-            json_object_set_new(made, facts[i].key, json_string(facts[i].value));
+            lq_json_set(&made, facts[i].key, lq_json_text(facts[i].value));
     return made;
 }
 
@@ -140,7 +140,7 @@ static json_t *describe_origin(const lq_packed *packed) {
  * keeps every bit, and its lists of numbers stay on one line. */
 static json_t *describe_structure(const lq_factored *factored) {
     char *text = lq_factored_to_json(factored);
-    json_t *structure = json_string(text ? text : "");
+    json_t *structure = text ? lq_json_text(text) : NULL;
     free(text);
     return structure;
 }
@@ -148,8 +148,7 @@ static json_t *describe_structure(const lq_factored *factored) {
 /* The nodes of the table that was factored. */
 static json_t *describe_table_axes(const lq_recipe_table *from) {
     json_t *axes = json_array();
-    for (int a = 0; a < from->kind->axis_count; a++)
-        json_array_append_new(axes, lq_axis_to_json(&from->axes[a]));
+    for (int a = 0; a < from->kind->axis_count; a++) lq_json_append(&axes, lq_axis_to_json(&from->axes[a]));
     return axes;
 }
 
@@ -157,8 +156,7 @@ static json_t *describe_table_axes(const lq_recipe_table *from) {
 static json_t *describe_fixed(const lq_recipe_table *from) {
     json_t *fixed = json_object();
     for (int a = 0; a < from->kind->axis_count; a++)
-        if (from->axes[a].size == 1)
-            json_object_set_new(fixed, from->axes[a].name, number(from->axes[a].min));
+        if (from->axes[a].size == 1) lq_json_set(&fixed, from->axes[a].name, number(from->axes[a].min));
     return fixed;
 }
 
@@ -167,9 +165,8 @@ static json_t *describe_tiles(const lq_packing *packing, size_t first, size_t co
     json_t *tiles = json_array();
     for (size_t i = first; i < first + count; i++) {
         const lq_tile *tile = &packing->atlas.tiles[i];
-        json_array_append_new(tiles,
-                              json_pack("[I, I, I, I]", (json_int_t)tile->x, (json_int_t)tile->y,
-                                        (json_int_t)tile->image->width, (json_int_t)tile->image->height));
+        lq_json_append(&tiles, json_pack("[I, I, I, I]", (json_int_t)tile->x, (json_int_t)tile->y,
+                                         (json_int_t)tile->image->width, (json_int_t)tile->image->height));
     }
     return tiles;
 }
@@ -196,27 +193,26 @@ static json_t *describe_table(const lq_packing *packing, size_t index, json_t *s
                               "function", function, "bytes", (json_int_t)lq_packed_bytes(packed), "fetches",
                               (json_int_t)lq_atlas_table_fetches(&source));
     if (packed->factored) {
-        json_object_set_new(table, "channel", json_string(from->kind->channels[from->channel]));
-        json_object_set_new(table, "textures", describe_factors(recipe, packed, sums));
-        json_object_set_new(table, "structure", describe_structure(packed->factored));
-        json_object_set_new(table, "table-axes", describe_table_axes(from));
+        lq_json_set(&table, "channel", lq_json_text(from->kind->channels[from->channel]));
+        lq_json_set(&table, "textures", describe_factors(recipe, packed, sums));
+        lq_json_set(&table, "structure", describe_structure(packed->factored));
+        lq_json_set(&table, "table-axes", describe_table_axes(from));
     } else {
         json_t *axes = json_array(), *channels = json_array();
         for (int a = 0; a < texture->axis_count; a++)
-            json_array_append_new(axes, describe_axis(&texture->axes[a], a));
+            lq_json_append(&axes, describe_axis(&texture->axes[a], a));
         for (int c = 0; c < texture->channel_count; c++)
-            json_array_append_new(channels, json_string(texture->channels[c]));
-        json_object_set_new(table, "axes", axes);
-        json_object_set_new(table, "fixed", describe_fixed(from));
-        json_object_set_new(table, "channels", channels);
+            lq_json_append(&channels, lq_json_text(texture->channels[c]));
+        lq_json_set(&table, "axes", axes);
+        lq_json_set(&table, "fixed", describe_fixed(from));
+        lq_json_set(&table, "channels", channels);
     }
     if (recipe->atlas)
-        json_object_set_new(table, "tiles",
-                            describe_tiles(packing, packing->tiles[index], layers_of(packed)));
-    add_binaries(packed, files);
-    json_object_set_new(table, "files", files);
-    json_object_set_new(table, "error", describe_error(packed));
-    json_object_set_new(table, "made", describe_origin(packed));
+        lq_json_set(&table, "tiles", describe_tiles(packing, packing->tiles[index], layers_of(packed)));
+    add_binaries(packed, &files);
+    lq_json_set(&table, "files", files);
+    lq_json_set(&table, "error", describe_error(packed));
+    lq_json_set(&table, "made", describe_origin(packed));
     return table;
 }
 
@@ -224,9 +220,9 @@ static json_t *describe_table(const lq_packing *packing, size_t index, json_t *s
 static json_t *describe_lobes(const lq_lobes *lobes) {
     json_t *numbers = json_object();
     for (int k = 0; k < LQ_MATERIAL_NUMBERS; k++)
-        json_object_set_new(numbers, lq_lobes_number_name(k),
-                            lobes->channel[k] < 0 ? json_pack("{s:f}", "constant", lobes->constant[k])
-                                                  : json_pack("{s:i}", "channel", lobes->channel[k]));
+        lq_json_set(&numbers, lq_lobes_number_name(k),
+                    lobes->channel[k] < 0 ? json_pack("{s:f}", "constant", lobes->constant[k])
+                                          : json_pack("{s:i}", "channel", lobes->channel[k]));
     return numbers;
 }
 
@@ -238,11 +234,11 @@ static json_t *describe_material_error(const lq_recipe *recipe, const lq_packed_
                               "exact stack, for mu >= 0.02; energies, and roughness times the energy it has");
     json_t *worst = json_object();
     for (int a = 0; a < 1 + m->from->material.range_count; a++)
-        json_object_set_new(worst, a == 0 ? "mu" : m->from->material.ranges[a - 1].name,
-                            number(m->measure.worst[a]));
-    json_object_set_new(error, "worst-at", worst);
-    if (isfinite(recipe->p99)) json_object_set_new(error, "budget-p99", number(recipe->p99));
-    if (isfinite(recipe->max)) json_object_set_new(error, "budget-max", number(recipe->max));
+        lq_json_set(&worst, a == 0 ? "mu" : m->from->material.ranges[a - 1].name,
+                    number(m->measure.worst[a]));
+    lq_json_set(&error, "worst-at", worst);
+    if (isfinite(recipe->p99)) lq_json_set(&error, "budget-p99", number(recipe->p99));
+    if (isfinite(recipe->max)) lq_json_set(&error, "budget-max", number(recipe->max));
     return error;
 }
 
@@ -255,7 +251,7 @@ static json_t *describe_material(const lq_packing *packing, size_t index) {
     char function[64], *stack = NULL;
     snprintf(function, sizeof function, "lacquer_%s", m->name);
     for (int a = 0; a < lobes->axis_count && textured; a++)
-        json_array_append_new(axes, describe_axis(&lobes->axes[a], a));
+        lq_json_append(&axes, describe_axis(&lobes->axes[a], a));
     if (lq_stack_text(m->from->stack, &stack, NULL) != LQ_OK) stack = NULL;
     json_t *material = json_pack(
         "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "name", m->from->name, "function",
@@ -268,18 +264,18 @@ static json_t *describe_material(const lq_packing *packing, size_t index) {
     return material;
 }
 
-static void add_atlas(const lq_packing *packing, json_t *root, json_t *sums) {
+static void add_atlas(const lq_packing *packing, json_t **root, json_t *sums) {
     const lq_image *image = &packing->atlas.image;
-    json_object_set_new(root, "atlas",
-                        json_pack("{s:I, s:I, s:s, s:o}", "width", (json_int_t)image->width, "height",
-                                  (json_int_t)image->height, "layout",
-                                  "tiles are [x, y, width, height] without their border of one texel, which "
-                                  "repeats the edge; a texel of a material holds channels 4 t to 4 t + 3",
-                                  "files", describe_stem(packing->recipe, "atlas", sums)));
+    lq_json_set(root, "atlas",
+                json_pack("{s:I, s:I, s:s, s:o}", "width", (json_int_t)image->width, "height",
+                          (json_int_t)image->height, "layout",
+                          "tiles are [x, y, width, height] without their border of one texel, which "
+                          "repeats the edge; a texel of a material holds channels 4 t to 4 t + 3",
+                          "files", describe_stem(packing->recipe, "atlas", sums)));
     json_t *materials = json_array();
     for (size_t i = 0; i < packing->recipe->material_count; i++)
-        json_array_append_new(materials, describe_material(packing, i));
-    json_object_set_new(root, "materials", materials);
+        lq_json_append(&materials, describe_material(packing, i));
+    lq_json_set(root, "materials", materials);
 }
 
 lq_status lq_manifest_write(const lq_packing *packing, const char *folder, lq_error *error) {
@@ -288,20 +284,18 @@ lq_status lq_manifest_write(const lq_packing *packing, const char *folder, lq_er
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
     json_t *tables = json_array(), *sources = json_array();
     json_t *sums = lq_contents_list(folder); /* NULL: json_pack below says so */
-    for (size_t i = 0; i < recipe->count; i++)
-        json_array_append_new(tables, describe_table(packing, i, sums));
+    for (size_t i = 0; i < recipe->count; i++) lq_json_append(&tables, describe_table(packing, i, sums));
     for (int l = 0; l < lq_packing_languages(recipe); l++)
-        json_array_append_new(sources, json_string(lq_language_file((lq_language)l)));
+        lq_json_append(&sources, lq_json_text(lq_language_file((lq_language)l)));
     json_t *root =
         json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:O}", "format", LQ_PACK_FORMAT, "version",
                   LQ_PACK_VERSION, "pack", recipe->name, "made-by", "lacquer " LQ_VERSION, "orientation",
                   "texel 0 of every axis is its min and is stored first", "sampler",
                   "linear filter, clamp to edge, no mip levels", "texture-bytes",
                   (json_int_t)lq_packing_bytes(packing), "decode", sources, "tables", tables, "files", sums);
-    if (root && recipe->atlas) add_atlas(packing, root, sums);
+    if (recipe->atlas) add_atlas(packing, &root, sums);
     json_decref(sums);
-    char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    json_decref(root);
+    char *text = lq_json_dump(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     if (!text) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
     lq_status status = lq_output_save(path, text, strlen(text), error);
     free(text);

@@ -5,11 +5,11 @@
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/factors_json.h"
+#include "system/json.h"
 #include "system/status.h"
 #include "tables/axis.h"
 #include "tables/exr_layout.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -335,14 +335,13 @@ bool lq_pack_found(const char *folder) {
 lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
     reader r = {folder, NULL, error};
     char path[4096];
-    json_error_t wrong;
     *pack = (lq_pack){.count = 0};
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
-    json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &wrong);
-    if (!root) return lq_fail(error, LQ_FORMAT, "%s:%d: %s", path, wrong.line, wrong.text);
+    json_t *root;
+    lq_status status = lq_json_read(&root, path, error);
+    if (status != LQ_OK) return status;
     json_t *tables = json_object_get(root, "tables");
     const char *name = json_string_value(json_object_get(root, "pack"));
-    lq_status status = LQ_OK;
     const size_t count = json_array_size(tables);
     if (!name || count == 0 || count > LQ_RECIPE_TABLES)
         status = refuse(&r, "", "not the manifest of a pack");

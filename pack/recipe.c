@@ -6,6 +6,8 @@
 #include "pack/recipe_text.h"
 #include "pack/scene.h"
 #include "pack/texture.h"
+#include "system/input.h"
+#include "system/json.h"
 #include "system/status.h"
 #include "tables/axis.h"
 
@@ -282,32 +284,16 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     return status == LQ_OK ? check_names(r) : status;
 }
 
-/* The whole file, with a zero after it; NULL and a message where that fails. */
-static char *read_text(const char *path, lq_error *error) {
-    enum { LARGEST = 1 << 20 };
-    FILE *in = fopen(path, "rb");
-    char *text = in ? malloc(LARGEST + 1) : NULL;
-    const size_t size = text ? fread(text, 1, LARGEST + 1, in) : 0;
-    const bool fine = text && !ferror(in) && size <= LARGEST;
-    if (in) fclose(in);
-    if (fine) {
-        text[size] = '\0';
-        return text;
-    }
-    lq_fail(error, LQ_IO, "%s: cannot be read as a recipe (a JSON file of at most 1 MB)", path);
-    free(text);
-    return NULL;
-}
-
 lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *trust, lq_error *error) {
-    json_error_t wrong;
+    char *text;
+    size_t size;
     *recipe = (lq_recipe){0};
-    char *text = read_text(path, error);
-    if (!text) return LQ_IO;
+    lq_status status = lq_input_read(path, &text, &size, error);
+    if (status != LQ_OK) return status;
     lq_recipe_reader r = {path, text, LQ_RECIPE_WHOLE, recipe, error, trust};
-    json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, &wrong);
-    lq_status status = root ? read_root(&r, root)
-                            : lq_fail(error, LQ_FORMAT, "%s:%d: not JSON: %s", path, wrong.line, wrong.text);
+    json_t *root;
+    status = lq_json_parse(&root, path, text, size, error);
+    if (status == LQ_OK) status = read_root(&r, root);
     json_decref(root);
     free(text);
     if (status != LQ_OK) lq_recipe_free(recipe);

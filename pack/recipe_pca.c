@@ -114,10 +114,11 @@ lq_status lq_recipe_read_pca(const lq_recipe_reader *r, json_t *pca, lq_recipe_t
     if (status == LQ_OK) status = read_texts(r, pca, table);
     if (status == LQ_OK) status = read_channel(r, pca, table);
     if (status == LQ_OK) status = check(r, pca, table);
-    char *text = status == LQ_OK ? json_dumps(pca, JSON_SORT_KEYS | JSON_REAL_PRECISION(9)) : NULL;
-    if (text && strlen(text) >= sizeof table->pca_text)
-        status = lq_refuse(r, "pca", "pca: more than 511 characters");
-    if (text) snprintf(table->pca_text, sizeof table->pca_text, "%s", text);
+    if (status != LQ_OK) return status;
+    char *text = lq_json_dump(json_incref(pca), JSON_SORT_KEYS | JSON_REAL_PRECISION(9));
+    if (!text) return lq_fail(r->error, LQ_NO_MEMORY, "%s: no memory to read it", r->path);
+    if (strlen(text) >= sizeof table->pca_text) status = lq_refuse(r, "pca", "pca: more than 511 characters");
+    snprintf(table->pca_text, sizeof table->pca_text, "%s", text);
     free(text);
     return status;
 }

@@ -3,8 +3,7 @@
 #define LACQUER_PACK_RECIPE_TEXT_H
 
 #include "pack/recipe.h"
-
-#include <jansson.h>
+#include "system/json.h"
 
 enum { LQ_RECIPE_WHOLE = -1 };
 

@@ -1,12 +1,12 @@
 /* factors_json.c - the structure of a factored table as JSON text, and back. */
 #include "pca/factors_json.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pca/factors.h"
+#include "system/json.h"
 #include "system/status.h"
 #include "tables/exr_layout.h"
 
@@ -15,16 +15,9 @@ enum { BASES_MAX = 4096, TERMS_MAX = 65536, TEXELS_MAX = 1 << 24 };
 
 /* ------------------------------------------------------------------ to JSON */
 
-/* Appends and gives `array` back, or releases both. */
-static json_t *append(json_t *array, json_t *item) {
-    if (array && json_array_append_new(array, item) == 0) return array;
-    json_decref(array);
-    return NULL;
-}
-
 static json_t *numbers(const double *values, int count) {
     json_t *array = json_array();
-    for (int i = 0; array && i < count; i++) array = append(array, json_real(values[i]));
+    for (int i = 0; array && i < count; i++) lq_json_append(&array, lq_json_number(values[i]));
     return array;
 }
 
@@ -32,9 +25,9 @@ static json_t *factor_to_json(const lq_factor *factor) {
     json_t *axes = json_array();
     for (int a = 0; axes && a < factor->axis_count; a++) {
         const lq_texture_axis *axis = &factor->axes[a];
-        axes = append(axes, json_pack("{s:s, s:i, s:i, s:o}", "coordinate",
-                                      lq_coordinate_name(axis->coordinate), "axis", axis->axis, "other",
-                                      axis->other, "texels", lq_axis_to_json(&axis->texels)));
+        lq_json_append(&axes, json_pack("{s:s, s:i, s:i, s:o}", "coordinate",
+                                        lq_coordinate_name(axis->coordinate), "axis", axis->axis, "other",
+                                        axis->other, "texels", lq_axis_to_json(&axis->texels)));
     }
     return json_pack("{s:I, s:o}", "bases", (json_int_t)factor->base_count, "axes", axes);
 }
@@ -42,18 +35,18 @@ static json_t *factor_to_json(const lq_factor *factor) {
 static json_t *sum_to_json(const lq_term_sum *sum) {
     json_t *factors = json_array(), *index = json_array();
     for (int g = 0; factors && g < sum->factor_count; g++)
-        factors = append(factors, json_integer(sum->factors[g]));
+        lq_json_append(&factors, json_integer(sum->factors[g]));
     for (size_t i = 0; index && i < sum->term_count * (size_t)sum->factor_count; i++)
-        index = append(index, json_integer(sum->index[i]));
+        lq_json_append(&index, json_integer(sum->index[i]));
     return json_pack("{s:o, s:o}", "factors", factors, "index", index);
 }
 
 static json_t *piece_to_json(const lq_piece *piece, int axis_count) {
     json_t *factors = json_array(), *streams = json_array();
     for (int f = 0; factors && f < piece->factor_count; f++)
-        factors = append(factors, factor_to_json(&piece->factors[f]));
+        lq_json_append(&factors, factor_to_json(&piece->factors[f]));
     for (int k = 0; streams && k < piece->stream_count; k++)
-        streams = append(streams, sum_to_json(&piece->streams[k]));
+        lq_json_append(&streams, sum_to_json(&piece->streams[k]));
     return json_pack("{s:o, s:o, s:s, s:i, s:o, s:o}", "min", numbers(piece->min, axis_count), "max",
                      numbers(piece->max, axis_count), "value", lq_value_name(piece->value), "value_axis",
                      piece->value_axis, "factors", factors, "streams", streams);
@@ -62,15 +55,13 @@ static json_t *piece_to_json(const lq_piece *piece, int axis_count) {
 char *lq_factored_to_json(const lq_factored *factored) {
     json_t *axes = json_array(), *pieces = json_array();
     for (int a = 0; axes && a < factored->axis_count; a++)
-        axes = append(axes, json_pack("{s:s, s:f, s:f}", "name", factored->axes[a].name, "min",
-                                      factored->axes[a].min, "max", factored->axes[a].max));
+        lq_json_append(&axes, json_pack("{s:s, s:f, s:f}", "name", factored->axes[a].name, "min",
+                                        factored->axes[a].min, "max", factored->axes[a].max));
     for (int p = 0; pieces && p < factored->piece_count; p++)
-        pieces = append(pieces, piece_to_json(&factored->pieces[p], factored->axis_count));
+        lq_json_append(&pieces, piece_to_json(&factored->pieces[p], factored->axis_count));
     json_t *all = json_pack("{s:o, s:f, s:f, s:o}", "axes", axes, "value_min", factored->value_min,
                             "value_max", factored->value_max, "pieces", pieces);
-    char *text = all ? json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
-    json_decref(all);
-    return text;
+    return lq_json_dump(all, JSON_COMPACT | JSON_REAL_PRECISION(17));
 }
 
 /* ------------------------------------------------------------------ from JSON */
@@ -226,10 +217,9 @@ static lq_status read_all(json_t *json, lq_factored *factored, lq_error *error) 
 }
 
 lq_status lq_factored_from_json(const char *text, lq_factored *factored, lq_error *error) {
-    json_error_t cause;
-    json_t *json = json_loads(text, JSON_REJECT_DUPLICATES, &cause);
-    if (!json) return wrong("the structure", cause.text, error);
-    const lq_status status = read_all(json, factored, error);
+    json_t *json;
+    lq_status status = lq_json_parse(&json, "the structure of the factors", text, strlen(text), error);
+    if (status == LQ_OK) status = read_all(json, factored, error);
     json_decref(json);
     return status;
 }

@@ -4,9 +4,9 @@
 #include "program/info_pack.h"
 #include "program/message.h"
 #include "program/options.h"
+#include "program/output.h"
 #include "program/verb.h"
 
-#include <jansson.h>
 #include <math.h>
 
 typedef struct channel_range {
@@ -67,38 +67,29 @@ static void print_text(const char *path, const lq_table *table) {
 
 static json_t *axis_json(const lq_axis *axis) {
     json_t *nodes = json_array();
-    for (size_t i = 0; i < axis->size; i++) json_array_append_new(nodes, json_real(axis->nodes[i]));
+    for (size_t i = 0; i < axis->size; i++) lq_json_append(&nodes, lq_json_number(axis->nodes[i]));
     return json_pack("{s:s, s:I, s:f, s:f, s:s, s:f, s:o}", "name", axis->name, "size",
                      (json_int_t)axis->size, "min", axis->min, "max", axis->max, "map",
                      lq_map_name(axis->map), "exponent", axis->exponent, "nodes", nodes);
 }
 
-/* JSON has no NaN: a channel without one finite entry has null figures. */
-static json_t *real_or_null(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *channel_json(const lq_table *table, int channel) {
     channel_range range = measure(table, channel);
     return json_pack("{s:s, s:o, s:o, s:o, s:I}", "name", table->channel_names[channel], "min",
-                     real_or_null(range.min), "max", real_or_null(range.max), "mean",
-                     real_or_null(range.mean), "not_finite", (json_int_t)range.bad);
+                     lq_json_number(range.min), "max", lq_json_number(range.max), "mean",
+                     lq_json_number(range.mean), "not_finite", (json_int_t)range.bad);
 }
 
 static int print_json(const char *path, const lq_table *table) {
     json_t *axes = json_array(), *channels = json_array(), *facts = json_object();
-    for (int i = 0; i < table->axis_count; i++) json_array_append_new(axes, axis_json(&table->axes[i]));
-    for (int i = 0; i < table->channel_count; i++) json_array_append_new(channels, channel_json(table, i));
+    for (int i = 0; i < table->axis_count; i++) lq_json_append(&axes, axis_json(&table->axes[i]));
+    for (int i = 0; i < table->channel_count; i++) lq_json_append(&channels, channel_json(table, i));
     for (size_t i = 0; i < table->fact_count; i++)
-        json_object_set_new(facts, table->facts[i].key, json_string(table->facts[i].value));
+        lq_json_set(&facts, table->facts[i].key, lq_json_text(table->facts[i].value));
     json_t *root =
-        json_pack("{s:s, s:I, s:o, s:o, s:o}", "file", path, "entries", (json_int_t)lq_table_entries(table),
-                  "axes", axes, "channels", channels, "facts", facts);
-    if (!root) return cli_fail("%s: its names are not valid UTF-8, which JSON needs", path);
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
-    printf("\n");
-    json_decref(root);
-    return CLI_DONE;
+        json_pack("{s:o, s:I, s:o, s:o, s:o}", "file", lq_json_text(path), "entries",
+                  (json_int_t)lq_table_entries(table), "axes", axes, "channels", channels, "facts", facts);
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(15)) ? CLI_DONE : CLI_FAILED;
 }
 
 /* ======================================================================================

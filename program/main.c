@@ -3,6 +3,7 @@
 #include "program/message.h"
 #include "program/options.h"
 #include "program/progress.h"
+#include "program/terminal.h"
 #include "program/verb.h"
 #include "system/status.h"
 
@@ -104,6 +105,7 @@ int main(int argc, char **argv) {
     /* A write beyond a file size limit must come back as an error that cleans up, not as a kill. */
     signal(SIGXFSZ, SIG_IGN);
     cli_catch_signals();
+    if (!cli_guard_stdout()) return cli_fail("no memory to print with");
     int code = run(argc, argv);
     if (code == CLI_FAILED || code == CLI_INTERRUPTED) return code; /* one line is said already */
     errno = 0;

@@ -2,6 +2,7 @@
 #include "program/message.h"
 
 #include "program/verb.h"
+#include "system/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,12 +15,11 @@ void cli_message_verb(const char *verb) {
     verb_name = verb;
 }
 
-/* Line breaks in user text must not turn one message into two lines. */
+/* Line breaks in user text must not turn one message into two lines, nor escapes steer the terminal. */
 static void print_line(const char *format, va_list arguments) {
     char text[2 * LQ_MESSAGE_SIZE];
     vsnprintf(text, sizeof text, format, arguments);
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < ' ') *c = ' ';
+    lq_text_clean(text, strlen(text), "");
     fflush(stdout); /* results printed so far come before the message where both go to one place */
     if (verb_name) fprintf(stderr, "lacquer %s: %s\n", verb_name, text);
     else fprintf(stderr, "lacquer: %s\n", text);

@@ -50,3 +50,12 @@ bool cli_output_check(const char *path) {
     cli_message("cannot write %s: folder %s: %s", path, folder, strerror(errno));
     return false;
 }
+
+bool cli_print_json(json_t *root, size_t flags) {
+    char *text = lq_json_dump(root, flags);
+    if (!text) cli_message("no memory to print JSON");
+    else puts(text);
+    const bool printed = text;
+    free(text);
+    return printed;
+}

@@ -1,6 +1,5 @@
 /* reader.c - a stack from its JSON description; every complaint names file, line, layer and what is accepted.
  */
-#include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include "stack/locate.h"
 #include "stack/reader.h"
 #include "system/input.h"
+#include "system/json.h"
 #include "system/status.h"
 
 typedef struct reader {
@@ -298,15 +298,10 @@ lq_status lq_stack_from_json(lq_stack **stack, json_t *json, const lq_stack_plac
 lq_status lq_stack_parse(lq_stack **stack, const char *text, const char *name, unsigned flags,
                          lq_error *error) {
     reader r = {.name = name, .text = text, .flags = flags, .error = error};
-    json_error_t cause;
     *stack = NULL;
-    json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, &cause);
-    if (!root) {
-        if (json_error_code(&cause) == json_error_out_of_memory)
-            return lq_fail(error, LQ_NO_MEMORY, "no memory for a stack");
-        return lq_fail(error, LQ_FORMAT, "%s: line %d: %s; accepted: JSON", name, cause.line, cause.text);
-    }
-    const lq_status status = make_stack(&r, root, stack);
+    json_t *root;
+    lq_status status = lq_json_parse(&root, name, text, strlen(text), error);
+    if (status == LQ_OK) status = make_stack(&r, root, stack);
     json_decref(root);
     return status;
 }

@@ -4,7 +4,7 @@
 
 #include "lacquer.h"
 
-#include <jansson.h>
+#include "system/json.h"
 
 /* Where: messages say the line. */
 typedef struct lq_stack_place {

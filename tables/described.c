@@ -1,11 +1,11 @@
 /* described.c - tables of anybody's: bare numbers and a JSON text that says what they are (docs/foreign.md).
  */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/json.h"
 #include "system/status.h"
 #include "tables/axis.h"
 #include "tables/raw.h"
@@ -25,9 +25,8 @@ typedef struct description {
 } description;
 
 static lq_status load(description *d, lq_error *error) {
-    json_error_t cause;
-    d->root = json_load_file(d->path, JSON_REJECT_DUPLICATES, &cause);
-    if (!d->root) return lq_fail(error, LQ_FORMAT, "%s: line %d: %s", d->path, cause.line, cause.text);
+    const lq_status status = lq_json_read(&d->root, d->path, error);
+    if (status) return status;
     const char *id = json_string_value(json_object_get(d->root, "table"));
     if (!id) return lq_fail(error, LQ_BAD_INPUT, "%s: \"table\" is missing: an id of lacquer list", d->path);
     lq_error unknown = {""};

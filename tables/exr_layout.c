@@ -2,30 +2,22 @@
 #define _POSIX_C_SOURCE 200809L /* strdup */
 #include "tables/exr_layout.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
+#include "system/json.h"
 #include "system/status.h"
 #include "tables/axis.h"
 
 /* ------------------------------------------------------------------ to JSON */
 
 /* 17 significant digits bring every double back bit for bit. */
-static char *dump_and_release(json_t *json) {
-    char *text = json ? json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
-    json_decref(json);
-    return text;
-}
+enum { EXACT = JSON_COMPACT | JSON_REAL_PRECISION(17) };
 
 static json_t *nodes_to_json(const lq_axis *axis) {
     json_t *array = json_array();
-    for (size_t i = 0; array && i < axis->size; i++) {
-        if (json_array_append_new(array, json_real(axis->nodes[i])) == 0) continue;
-        json_decref(array);
-        return NULL;
-    }
+    for (size_t i = 0; array && i < axis->size; i++) lq_json_append(&array, lq_json_number(axis->nodes[i]));
     return array;
 }
 
@@ -33,21 +25,15 @@ json_t *lq_axis_to_json(const lq_axis *axis) {
     json_t *json =
         json_pack("{s:s, s:I, s:f, s:f, s:s, s:f}", "name", axis->name, "size", (json_int_t)axis->size, "min",
                   axis->min, "max", axis->max, "map", lq_map_name(axis->map), "exponent", axis->exponent);
-    if (!json || axis->map != LQ_MAP_CUSTOM) return json;
-    if (json_object_set_new(json, "nodes", nodes_to_json(axis)) == 0) return json;
-    json_decref(json);
-    return NULL;
+    if (axis->map == LQ_MAP_CUSTOM) lq_json_set(&json, "nodes", nodes_to_json(axis));
+    return json;
 }
 
 /* The array of `count` texts made by `item`. */
 static char *array_text(const lq_table *table, size_t count, json_t *(*item)(const lq_table *, size_t)) {
     json_t *array = json_array();
-    for (size_t i = 0; array && i < count; i++) {
-        if (json_array_append_new(array, item(table, i)) == 0) continue;
-        json_decref(array);
-        return NULL;
-    }
-    return dump_and_release(array);
+    for (size_t i = 0; array && i < count; i++) lq_json_append(&array, item(table, i));
+    return lq_json_dump(array, EXACT);
 }
 
 static json_t *axis_item(const lq_table *table, size_t i) {
@@ -76,17 +62,13 @@ char *lq_exr_facts_text(const lq_table *table) {
 
 /* ------------------------------------------------------------------ from JSON */
 
-static json_t *parse_array(const char *text, const char *what, size_t limit, lq_error *error) {
-    json_error_t cause;
-    json_t *array = json_loads(text, JSON_REJECT_DUPLICATES, &cause);
-    if (!array) {
-        lq_fail(error, LQ_FORMAT, "the %s are not JSON (%s)", what, cause.text);
-    } else if (!json_is_array(array) || (limit && json_array_size(array) > limit)) {
-        lq_fail(error, LQ_FORMAT, "the %s are not a JSON array of accepted length", what);
-        json_decref(array);
-        array = NULL;
-    }
-    return array;
+static lq_status parse_array(json_t **array, const char *text, const char *what, size_t limit,
+                             lq_error *error) {
+    const lq_status status = lq_json_parse(array, what, text, strlen(text), error);
+    if (status || (json_is_array(*array) && json_array_size(*array) <= limit)) return status;
+    json_decref(*array);
+    *array = NULL;
+    return lq_fail(error, LQ_FORMAT, "%s: not a JSON array of at most %zu", what, limit);
 }
 
 static lq_status parse_nodes(lq_axis *axis, const char *name, json_int_t size, const json_t *array,
@@ -129,9 +111,9 @@ lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error) {
 
 lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_error *error) {
     *count = 0;
-    json_t *array = parse_array(text, "axes", LQ_MAX_AXES, error);
-    if (!array) return LQ_FORMAT;
-    lq_status status = LQ_OK;
+    json_t *array;
+    lq_status status = parse_array(&array, text, "axes", LQ_MAX_AXES, error);
+    if (status) return status;
     size_t size = json_array_size(array);
     while ((size_t)*count < size && status == LQ_OK) {
         status = lq_axis_from_json(json_array_get(array, (size_t)*count), &axes[*count], error);
@@ -146,10 +128,10 @@ lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_erro
 lq_status lq_exr_parse_names(const char *text, size_t limit, char ***names, size_t *count, lq_error *error) {
     *count = 0;
     *names = NULL;
-    json_t *array = parse_array(text, "names", limit, error);
-    if (!array) return LQ_FORMAT;
+    json_t *array;
+    lq_status status = parse_array(&array, text, "names", limit, error);
+    if (status) return status;
     size_t size = json_array_size(array);
-    lq_status status = LQ_OK;
     *names = calloc(size + 1, sizeof **names);
     if (!*names) status = lq_fail(error, LQ_NO_MEMORY, "no memory for %zu names", size);
     while (*count < size && status == LQ_OK) {

@@ -2,7 +2,7 @@
 #ifndef LACQUER_TABLES_EXR_LAYOUT_H
 #define LACQUER_TABLES_EXR_LAYOUT_H
 
-#include <jansson.h>
+#include "system/json.h"
 #include <stdint.h>
 
 #include "lacquer.h"
@@ -35,7 +35,7 @@ lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error);
 /* The axes a JSON text describes; frees what it made when it fails. The message names no file. */
 lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_error *error);
 
-/* An array of strings; `count` may be up to `limit` (0: any). Free with lq_exr_free_names. */
+/* An array of strings, up to `limit` of them. Free with lq_exr_free_names. */
 lq_status lq_exr_parse_names(const char *text, size_t limit, char ***names, size_t *count, lq_error *error);
 void lq_exr_free_names(char **names, size_t count);
 

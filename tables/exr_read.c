@@ -245,7 +245,7 @@ static lq_status read_facts(reader *r, lq_error *error) {
     if (!text) return LQ_FORMAT;
     char **keys;
     size_t count;
-    lq_status status = lq_exr_parse_names(text, 0, &keys, &count, error);
+    lq_status status = lq_exr_parse_names(text, LQ_MAX_FACTS, &keys, &count, error);
     if (status) return refuse(r, status, error ? error->text : "", error);
     for (size_t i = 0; i < count && status == LQ_OK; i++) status = read_fact(r, keys[i], error);
     lq_exr_free_names(keys, count);
@@ -278,8 +278,8 @@ static exr_result_t read_chunk(const reader *r, exr_decode_pipeline_t *decode, b
     exr_chunk_info_t chunk;
     exr_result_t result = exr_read_scanline_chunk_info(r->context, 0, (int)row, &chunk);
     if (result == EXR_ERR_SUCCESS)
-        result = lq_exr_check_chunk(&chunk, r->size,
-                                    r->width * (size_t)r->table->channel_count * sizeof(float));
+        result =
+            lq_exr_check_chunk(&chunk, r->size, r->width * (size_t)r->table->channel_count * sizeof(float));
     if (result != EXR_ERR_SUCCESS) return result;
     if (*started) result = exr_decoding_update(r->context, 0, &chunk, decode);
     else result = exr_decoding_initialize(r->context, 0, &chunk, decode);

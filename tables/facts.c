@@ -36,6 +36,10 @@ lq_status lq_facts_set(lq_fact **facts, size_t *count, const char *key, const ch
         (*facts)[i].value = new_value;
         return LQ_OK;
     }
+    if (new_value && *count == LQ_MAX_FACTS) {
+        free(new_value);
+        return lq_fail(error, LQ_BAD_INPUT, "fact '%s' is one too many; accepted are %d", key, LQ_MAX_FACTS);
+    }
     char *new_key = new_value ? strdup(key) : NULL;
     if (new_key && append(facts, count, new_key, new_value)) return LQ_OK;
     free(new_key);

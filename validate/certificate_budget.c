@@ -1,10 +1,10 @@
 /* Budgets from text and from JSON; whatever is not understood is refused by name. */
 #include "validate/certificate_budget.h"
 
+#include "system/json.h"
 #include "system/status.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -134,13 +134,11 @@ static lq_status take_file(lq_budgets *budgets, const json_t *root, lq_error *er
 }
 
 lq_status lq_budgets_read(lq_budgets *budgets, const char *path, lq_error *error) {
-    json_error_t where;
-    json_t *root = json_load_file(path, 0, &where);
-    if (!root)
-        return where.line < 0 ? lq_fail(error, LQ_IO, "%s: %s", path, strerror(errno))
-                              : lq_fail(error, LQ_FORMAT, "%s: line %d: %s", path, where.line, where.text);
+    json_t *root;
+    lq_status status = lq_json_read(&root, path, error);
+    if (status != LQ_OK) return status;
     lq_error cause = {""};
-    const lq_status status = take_file(budgets, root, &cause);
+    status = take_file(budgets, root, &cause);
     json_decref(root);
     return status == LQ_OK ? LQ_OK : lq_fail(error, status, "%s: %s", path, cause.text);
 }

@@ -1,29 +1,25 @@
 /* Certificates as JSON: docs/certificates.md lists the members. */
 #include "validate/report.h"
 
+#include "system/json.h"
 #include "system/status.h"
 #include "validate/certificate_confidence.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* JSON knows no infinity: such a number becomes null. */
-static json_t *number(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static json_t *point_json(const lq_kind *kind, const double *at) {
     json_t *root = json_object();
-    for (int a = 0; a < kind->axis_count; a++) json_object_set_new(root, kind->axes[a].name, number(at[a]));
+    for (int a = 0; a < kind->axis_count; a++) lq_json_set(&root, kind->axes[a].name, lq_json_number(at[a]));
     return root;
 }
 
 static json_t *figures_json(const lq_certificate *c, const lq_figures *f) {
     const size_t axes = (size_t)c->request.kind->axis_count;
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "max", number(f->max), "p99", number(f->p99),
-                     "p99_limit", number(f->p99_limit), "rms", number(f->rms), "mean", number(f->mean),
-                     "bias", number(f->bias), "effective_points", number(f->effective), "worst",
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "max", lq_json_number(f->max), "p99",
+                     lq_json_number(f->p99), "p99_limit", lq_json_number(f->p99_limit), "rms",
+                     lq_json_number(f->rms), "mean", lq_json_number(f->mean), "bias", lq_json_number(f->bias),
+                     "effective_points", lq_json_number(f->effective), "worst",
                      point_json(c->request.kind, c->at + f->worst % c->points * axes));
 }
 
@@ -31,28 +27,28 @@ static json_t *stages_json(const lq_certificate *c) {
     json_t *list = json_array();
     for (int s = 0; s < c->request.stage_count; s++)
         for (int k = 0; k < c->request.kind->channel_count; k++)
-            json_array_append_new(
-                list,
-                json_pack("{s:s, s:s, s:s, s:o, s:o}", "stage", c->request.stages[s].name, "channel",
-                          c->request.kind->channels[k], "part", c->request.stages[s].part, "error",
-                          figures_json(c, &c->error[s][k]), "difference", figures_json(c, &c->part[s][k])));
+            lq_json_append(&list,
+                           json_pack("{s:s, s:s, s:s, s:o, s:o}", "stage", c->request.stages[s].name,
+                                     "channel", c->request.kind->channels[k], "part",
+                                     c->request.stages[s].part, "error", figures_json(c, &c->error[s][k]),
+                                     "difference", figures_json(c, &c->part[s][k])));
     return list;
 }
 
 static json_t *domain_json(const lq_certificate *c) {
     json_t *root = json_object();
     for (int a = 0; a < c->request.kind->axis_count; a++)
-        json_object_set_new(root, c->request.kind->axes[a].name,
-                            json_pack("[f, f]", c->request.domain.min[a], c->request.domain.max[a]));
+        lq_json_set(&root, c->request.kind->axes[a].name,
+                    json_pack("[f, f]", c->request.domain.min[a], c->request.domain.max[a]));
     return root;
 }
 
 static json_t *found_json(const lq_certificate *c) {
     json_t *root = point_json(c->request.kind, c->found.at);
-    json_object_set_new(root, "decoded", number(c->found.decoded));
-    json_object_set_new(root, "exact", number(c->found.exact));
-    json_object_set_new(root, "error", number(c->found.error));
-    json_object_set_new(root, "evaluations", json_integer((json_int_t)c->found.evaluations));
+    lq_json_set(&root, "decoded", lq_json_number(c->found.decoded));
+    lq_json_set(&root, "exact", lq_json_number(c->found.exact));
+    lq_json_set(&root, "error", lq_json_number(c->found.error));
+    lq_json_set(&root, "evaluations", json_integer((json_int_t)c->found.evaluations));
     return root;
 }
 
@@ -61,9 +57,10 @@ static json_t *checks_json(const lq_certified *certified) {
     json_t *list = json_array();
     for (int i = 0; i < certified->check_count; i++) {
         const lq_check *check = &certified->checks[i];
-        json_array_append_new(list, json_pack("{s:s, s:s, s:o, s:o, s:s}", "check", check->name, "outcome",
-                                              words[check->outcome], "value", number(check->value), "limit",
-                                              number(check->limit), "detail", check->detail));
+        lq_json_append(&list,
+                       json_pack("{s:o, s:s, s:o, s:o, s:o}", "check", lq_json_text(check->name), "outcome",
+                                 words[check->outcome], "value", lq_json_number(check->value), "limit",
+                                 lq_json_number(check->limit), "detail", lq_json_text(check->detail)));
     }
     return list;
 }
@@ -71,20 +68,20 @@ static json_t *checks_json(const lq_certified *certified) {
 static json_t *certified_json(const lq_certified *certified) {
     const lq_certificate *c = &certified->certificate;
     const lq_check *failed = lq_certified_failure(certified);
-    json_t *root = json_pack("{s:s, s:s, s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:b}", "file",
-                             certified->subject.name, "table", c->request.kind->id, "ndf",
-                             certified->subject.origin.settings.ndf, "domain", domain_json(c), "points",
-                             (json_int_t)(c->points * (size_t)c->request.kind->channel_count), "blocks",
-                             (json_int_t)c->plan.count, "seed", (json_int_t)c->request.seed, "solver_error",
-                             number(c->estimate), "total", figures_json(c, &c->total), "stages",
-                             stages_json(c), "search", found_json(c), "unseen_share", number(c->unseen),
-                             "checks", checks_json(certified), "passed", !failed);
-    if (root && certified->integration.count > 0)
-        json_object_set_new(root, "integration",
-                            json_pack("{s:I, s:o, s:o}", "entries", (json_int_t)certified->integration.count,
-                                      "max", number(certified->integration.max), "rms",
-                                      number(certified->integration.rms)));
-    if (root) json_object_set_new(root, "complaint", failed ? json_string(failed->name) : json_null());
+    json_t *root = json_pack("{s:o, s:s, s:o, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:b}", "file",
+                             lq_json_text(certified->subject.name), "table", c->request.kind->id, "ndf",
+                             lq_json_text(certified->subject.origin.settings.ndf), "domain", domain_json(c),
+                             "points", (json_int_t)(c->points * (size_t)c->request.kind->channel_count),
+                             "blocks", (json_int_t)c->plan.count, "seed", (json_int_t)c->request.seed,
+                             "solver_error", lq_json_number(c->estimate), "total", figures_json(c, &c->total),
+                             "stages", stages_json(c), "search", found_json(c), "unseen_share",
+                             lq_json_number(c->unseen), "checks", checks_json(certified), "passed", !failed);
+    if (certified->integration.count > 0)
+        lq_json_set(&root, "integration",
+                    json_pack("{s:I, s:o, s:o}", "entries", (json_int_t)certified->integration.count, "max",
+                              lq_json_number(certified->integration.max), "rms",
+                              lq_json_number(certified->integration.rms)));
+    lq_json_set(&root, "complaint", failed ? lq_json_text(failed->name) : json_null());
     return root;
 }
 
@@ -92,17 +89,11 @@ lq_status lq_report_json(const lq_certified *list, size_t count, char **text, lq
     bool passed = true;
     json_t *tables = json_array();
     for (size_t i = 0; i < count; i++) {
-        json_t *one = certified_json(&list[i]);
-        if (!one) {
-            json_decref(tables);
-            return lq_fail(error, LQ_FORMAT, "'%s' or its facts are not valid UTF-8", list[i].subject.name);
-        }
-        json_array_append_new(tables, one);
+        lq_json_append(&tables, certified_json(&list[i]));
         passed = passed && !lq_certified_failure(&list[i]);
     }
     json_t *root =
         json_pack("{s:f, s:b, s:o}", "confidence", LQ_CONFIDENCE, "passed", passed, "tables", tables);
-    *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    json_decref(root);
+    *text = lq_json_dump(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     return *text ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a report");
 }

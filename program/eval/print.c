@@ -2,9 +2,9 @@
 #include "program/eval/eval.h"
 
 #include "program/message.h"
+#include "program/output.h"
 #include "program/verb.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,38 +59,35 @@ void eval_print_csv_result(const eval_source *source, const eval_result *result)
 
 static json_t *source_json(const eval_source *source) {
     const lq_settings *settings = &source->settings;
-    if (!source->kind) return json_pack("{s:s}", "file", source->path);
-    json_t *root = json_pack("{s:s, s:s}", "table", source->kind->id, "ndf", settings->ndf);
+    if (!source->kind) return json_pack("{s:o}", "file", lq_json_text(source->path));
+    json_t *root = json_pack("{s:s, s:o}", "table", source->kind->id, "ndf", lq_json_text(settings->ndf));
     if (source->kind->takes & LQ_TAKES_SCATTERING)
-        json_object_set_new(root, "scattering",
-                            json_string(settings->scattering == LQ_SINGLE ? "single" : "multiple"));
+        lq_json_set(&root, "scattering",
+                    lq_json_text(settings->scattering == LQ_SINGLE ? "single" : "multiple"));
     if (source->kind->takes & LQ_TAKES_MASKING)
-        json_object_set_new(root, "masking",
-                            json_string(settings->masking == LQ_SEPARABLE ? "separable" : "correlated"));
+        lq_json_set(&root, "masking",
+                    lq_json_text(settings->masking == LQ_SEPARABLE ? "separable" : "correlated"));
     return root;
 }
 
-static void add_values(json_t *root, const eval_source *source, const eval_result *result) {
+static void add_values(json_t **root, const eval_source *source, const eval_result *result) {
     json_t *values = json_object();
     for (int i = 0; i < source->channel_count; i++)
-        json_object_set_new(values, source->channels[i], json_real(result->values[i]));
-    if (source->channel_count == 1) json_object_set_new(root, "value", json_real(result->values[0]));
-    else json_object_set(root, "values", values);
+        lq_json_set(&values, source->channels[i], lq_json_number(result->values[i]));
+    if (source->channel_count == 1)
+        lq_json_set(root, "value", json_incref(json_object_get(values, source->channels[0])));
+    else lq_json_set(root, "values", json_incref(values));
     json_decref(values);
     if (!source->kind) return;
-    json_object_set_new(root, "error", json_real(result->estimate));
-    json_object_set_new(root, "converged", json_boolean(result->status == LQ_OK));
+    lq_json_set(root, "error", lq_json_number(result->estimate));
+    lq_json_set(root, "converged", json_boolean(result->status == LQ_OK));
 }
 
 int eval_print_json(const eval_source *source, const eval_point *point, const eval_result *result) {
     json_t *root = source_json(source), *at = json_object();
-    if (!root) return cli_fail("'%s' is not valid UTF-8, which JSON needs", source->path);
     for (int i = 0; i < source->axis_count; i++)
-        json_object_set_new(at, source->axes[i].name, json_real(point->at[i]));
-    json_object_set_new(root, "point", at);
-    add_values(root, source, result);
-    json_dumpf(root, stdout, JSON_REAL_PRECISION(MOST_DIGITS));
-    printf("\n");
-    json_decref(root);
-    return CLI_DONE;
+        lq_json_set(&at, source->axes[i].name, lq_json_number(point->at[i]));
+    lq_json_set(&root, "point", at);
+    add_values(&root, source, result);
+    return cli_print_json(root, JSON_REAL_PRECISION(MOST_DIGITS)) ? CLI_DONE : CLI_FAILED;
 }

@@ -5,11 +5,11 @@
 #include "microfacet/lobe.h"
 #include "program/message.h"
 #include "program/progress.h"
+#include "system/json.h"
 #include "system/output.h"
 #include "validate/sample_visible.h"
 #include "validate/stream.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -106,7 +106,7 @@ json_t *fit_bounces(const fit_job *job, size_t samples) {
         for (int k = 0; k < COUNTS; k++) {
             const double count = (double)samples, mean = all[a].sum[k] / count;
             const double sigma = sqrt((all[a].square[k] / count - mean * mean) / count);
-            json_array_append_new(rows, row_of(job, alphas[a], counts[k], mean, sigma));
+            lq_json_append(&rows, row_of(job, alphas[a], counts[k], mean, sigma));
         }
     return rows;
 }
@@ -241,8 +241,7 @@ json_t *fit_anisotropic(const fit_job *job, size_t samples) {
         printf("%.1f  %.1f  %3d     %.5f  %.5f         %.4f  %.4f      %.5f  %.5f   %+6.1f %% %+6.1f %%\n",
                alpha[0], alpha[1], turns[i % TURNS], a[0], a[1], equal[i].ax, equal[i].ay, b[0], b[1],
                100.0 * (b[0] / a[0] - 1.0), 100.0 * (b[1] / a[1] - 1.0));
-        json_array_append_new(rows,
-                              json_pack("{s:[f,f], s:i, s:[f,f,f], s:[f,f], s:[f,f,f]}", "alpha", alpha[0],
+        lq_json_append(&rows, json_pack("{s:[f,f], s:i, s:[f,f,f], s:[f,f], s:[f,f,f]}", "alpha", alpha[0],
                                         alpha[1], "turn", turns[i % TURNS], "simulated", found[i].xx,
                                         found[i].yy, found[i].xy, "predicted-alpha", equal[i].ax, equal[i].ay,
                                         "predicted", claimed[i].xx, claimed[i].yy, claimed[i].xy));

@@ -3,8 +3,7 @@
 #define LACQUER_PROGRAM_FIT_BOUNCES_H
 
 #include "program/fit/fit.h"
-
-#include <jansson.h>
+#include "system/json.h"
 
 /* NULL: interrupted. `job` has its curve; fit_bounces also its fit. */
 json_t *fit_bounces(const fit_job *job, size_t samples);

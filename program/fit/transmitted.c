@@ -11,11 +11,6 @@ static const double cosines[] = {1.0, 0.8, 0.6, 0.4, 0.2};
 static const double alphas[] = {0.02, 0.1, 0.3, 0.6};
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
-/* JSON has no NaN: beyond the critical angle eq. 10 says nothing. */
-static json_t *number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *lobe_row(const fit_job *job, double eta, double mu, double alpha) {
     double passed, estimate;
     const double v = lq_transmitted_variance(job->ndf, alpha, eta, mu, &passed, &estimate);
@@ -25,8 +20,8 @@ static json_t *lobe_row(const fit_job *job, double eta, double mu, double alpha)
     if (isfinite(scale)) printf("   %.4e %+8.1f %%\n", narrow, 100.0 * (narrow / v - 1.0));
     else printf("   total reflection\n");
     return json_pack("{s:f, s:f, s:f, s:f, s:o, s:o, s:o}", "eta", eta, "mu", mu, "alpha", alpha, "passed",
-                     passed, "variance", number(v), "error-estimate", number(estimate), "equation-10",
-                     number(isfinite(scale) ? narrow : NAN));
+                     passed, "variance", lq_json_number(v), "error-estimate", lq_json_number(estimate),
+                     "equation-10", lq_json_number(isfinite(scale) ? narrow : NAN));
 }
 
 /* A lobe of alpha = 0.1 through a smooth interface. */
@@ -50,10 +45,10 @@ json_t *fit_transmitted(const fit_job *job) {
     for (int e = 0; e < COUNT(etas); e++)
         for (int m = 0; m < COUNT(cosines); m++)
             for (int a = 0; a < COUNT(alphas); a++)
-                json_array_append_new(rows, lobe_row(job, etas[e], cosines[m], alphas[a]));
+                lq_json_append(&rows, lobe_row(job, etas[e], cosines[m], alphas[a]));
     printf("A lobe of alpha = 0.1 through a smooth interface: what its variance is scaled by, the disc's "
            "eta12^2,\n"
            "and B18 eq. 13's 1/eta12\n   eta  measured              eta12^2    1/eta12\n");
-    for (int e = COUNT(etas) / 2; e < COUNT(etas); e++) json_array_append_new(rows, disc_row(job, etas[e]));
+    for (int e = COUNT(etas) / 2; e < COUNT(etas); e++) lq_json_append(&rows, disc_row(job, etas[e]));
     return rows;
 }

@@ -1,27 +1,23 @@
 /* The result of a fit as JSON, and the curve itself as a table. */
 #include "program/fit/bounces.h"
 #include "program/message.h"
+#include "system/json.h"
 #include "system/output.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static json_t *number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *errors_json(const fit_errors *errors) {
-    return json_pack("{s:o, s:o, s:o}", "rms", number(errors->rms), "max", number(errors->max), "max-at",
-                     number(errors->max_at));
+    return json_pack("{s:o, s:o, s:o}", "rms", lq_json_number(errors->rms), "max",
+                     lq_json_number(errors->max), "max-at", lq_json_number(errors->max_at));
 }
 
 static json_t *coefficients(const lq_family *family, const double *p) {
     json_t *object = json_object();
     for (int k = 0; k < family->parameters; k++) {
         const char name[2] = {family->names[k], '\0'};
-        json_object_set_new(object, name, number(p[k]));
+        lq_json_set(&object, name, lq_json_number(p[k]));
     }
     return object;
 }
@@ -31,8 +27,8 @@ static json_t *covariance(const lq_family *family, const lq_fit_answer *answer) 
     for (int i = 0; i < family->parameters; i++) {
         json_t *row = json_array();
         for (int k = 0; k < family->parameters; k++)
-            json_array_append_new(row, number(answer->covariance[i * LQ_FAMILY_PARAMETERS + k]));
-        json_array_append_new(rows, row);
+            lq_json_append(&row, lq_json_number(answer->covariance[i * LQ_FAMILY_PARAMETERS + k]));
+        lq_json_append(&rows, row);
     }
     return rows;
 }
@@ -40,35 +36,34 @@ static json_t *covariance(const lq_family *family, const lq_fit_answer *answer) 
 static json_t *describe(const fit_job *job) {
     const lq_family *family = lq_family_at(job->request.family);
     json_t *root = json_object();
-    json_object_set_new(root, "lacquer", json_string(LQ_VERSION));
-    json_object_set_new(root, "mapping", json_string(lq_mapping_name(job->request.mapping)));
-    json_object_set_new(root, "ndf", json_string(lq_ndf_text(job->ndf)));
-    json_object_set_new(root, "family", json_string(family->name));
-    json_object_set_new(root, "formula", json_string(family->formula));
-    json_object_set_new(root, "inverse", family->inverse ? json_string(family->inverse) : json_null());
-    json_object_set_new(root, "range", json_pack("[f, f]", job->request.low, job->request.high));
-    json_object_set_new(root, "points", json_integer((json_int_t)job->count));
-    json_object_set_new(root, "norm", json_string(job->request.smallest_rms ? "rms" : "max"));
-    json_object_set_new(root, "coefficients", coefficients(family, job->answer.p));
-    json_object_set_new(root, "covariance", covariance(family, &job->answer));
-    json_object_set_new(root, "iterations", json_integer(job->answer.iterations));
-    json_object_set_new(root, "relative-error", errors_json(&job->errors));
+    lq_json_set(&root, "lacquer", lq_json_text(LQ_VERSION));
+    lq_json_set(&root, "mapping", lq_json_text(lq_mapping_name(job->request.mapping)));
+    lq_json_set(&root, "ndf", lq_json_text(lq_ndf_text(job->ndf)));
+    lq_json_set(&root, "family", lq_json_text(family->name));
+    lq_json_set(&root, "formula", lq_json_text(family->formula));
+    lq_json_set(&root, "inverse", family->inverse ? lq_json_text(family->inverse) : json_null());
+    lq_json_set(&root, "range", json_pack("[f, f]", job->request.low, job->request.high));
+    lq_json_set(&root, "points", json_integer((json_int_t)job->count));
+    lq_json_set(&root, "norm", lq_json_text(job->request.smallest_rms ? "rms" : "max"));
+    lq_json_set(&root, "coefficients", coefficients(family, job->answer.p));
+    lq_json_set(&root, "covariance", covariance(family, &job->answer));
+    lq_json_set(&root, "iterations", json_integer(job->answer.iterations));
+    lq_json_set(&root, "relative-error", errors_json(&job->errors));
     if (job->published >= 0) {
         const lq_family *paper = lq_family_at(job->published);
-        json_object_set_new(root, "published",
-                            json_pack("{s:s, s:s, s:o, s:o}", "source", paper->source, "formula",
-                                      paper->formula, "coefficients", coefficients(paper, job->published_p),
-                                      "relative-error", errors_json(&job->published_errors)));
+        lq_json_set(&root, "published",
+                    json_pack("{s:s, s:s, s:o, s:o}", "source", paper->source, "formula", paper->formula,
+                              "coefficients", coefficients(paper, job->published_p), "relative-error",
+                              errors_json(&job->published_errors)));
     }
     return root;
 }
 
 static bool write_root(const fit_job *job, json_t *root) {
-    char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(10)) : NULL;
-    json_decref(root);
-    lq_error error = {"the result is not valid UTF-8"};
+    char *text = lq_json_dump(root, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
+    lq_error error = {"no memory for the result"};
     lq_output *output = NULL;
-    lq_status status = text ? lq_output_open(&output, job->request.output, &error) : LQ_BAD_INPUT;
+    lq_status status = text ? lq_output_open(&output, job->request.output, &error) : LQ_NO_MEMORY;
     if (status == LQ_OK && (status = lq_output_print(output, &error, "%s\n", text)) == LQ_OK)
         status = lq_output_commit(output, &error);
     else lq_output_abandon(output);
@@ -81,9 +76,9 @@ bool fit_write_json(const fit_job *job) {
 }
 
 bool fit_write_rows(const fit_job *job, const char *table, size_t samples, json_t *rows) {
-    return write_root(job,
-                      json_pack("{s:s, s:s, s:s, s:I, s:o}", "lacquer", LQ_VERSION, "table", table, "ndf",
-                                lq_ndf_text(job->ndf), "samples", (json_int_t)samples, "rows", rows));
+    return write_root(job, json_pack("{s:s, s:s, s:o, s:I, s:o}", "lacquer", LQ_VERSION, "table", table,
+                                     "ndf", lq_json_text(lq_ndf_text(job->ndf)), "samples",
+                                     (json_int_t)samples, "rows", rows));
 }
 
 /* f over alpha as log2 f, and its inverse: alpha over log2 f. Linear filtering between the nodes is within

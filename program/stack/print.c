@@ -1,12 +1,12 @@
 /* print.c - the three output formats of `lacquer stack`. */
 #include "program/stack/stack.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "program/message.h"
+#include "program/output.h"
 #include "program/verb.h"
 
 enum { NUMBER_SIZE = 32 };
@@ -94,8 +94,8 @@ static json_t *row_json(const stack_result *r, size_t m, int channel, size_t pat
     const bool opaque = r->stack->layers[r->stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
     json_t *row = json_pack("{s:f, s:i, s:o, s:f}", "mu", r->query->mu[m], "channel", channel, "reflected",
                             lobe_json(&light->reflected), "error", light->error);
-    if (!opaque) json_object_set_new(row, "transmitted", lobe_json(&light->transmitted));
-    if (r->query->paths) json_object_set_new(row, "path", json_integer((json_int_t)path + 1));
+    if (!opaque) lq_json_set(&row, "transmitted", lobe_json(&light->transmitted));
+    if (r->query->paths) lq_json_set(&row, "path", json_integer((json_int_t)path + 1));
     return row;
 }
 
@@ -103,15 +103,9 @@ int stack_print_json(const stack_result *r) {
     json_t *rows = json_array();
     for (size_t m = 0; m < r->query->mu_count; m++)
         for (int c = 0; c < r->channels; c++)
-            for (size_t p = 0; p < paths_of(r); p++) json_array_append_new(rows, row_json(r, m, c, p));
-    json_t *root = json_pack("{s:s, s:s, s:s, s:o}", "stack", r->stack->name, "from",
+            for (size_t p = 0; p < paths_of(r); p++) lq_json_append(&rows, row_json(r, m, c, p));
+    json_t *root = json_pack("{s:o, s:s, s:s, s:o}", "stack", lq_json_text(r->stack->name), "from",
                              r->query->from_below ? "below" : "above", "interfaces",
                              r->query->single ? "single" : "all", "light", rows);
-    char *text =
-        root ? json_dumps(root, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12)) : NULL;
-    json_decref(root);
-    if (!text) return cli_fail("out of memory");
-    puts(text);
-    free(text);
-    return CLI_DONE;
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) ? CLI_DONE : CLI_FAILED;
 }

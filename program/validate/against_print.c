@@ -3,7 +3,6 @@
 
 #include "program/output.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -97,61 +96,54 @@ void against_print_text(const against_job *job) {
  *                                         JSON
  * ====================================================================================== */
 
-/* JSON knows no infinity: such a number becomes null. */
-static json_t *number(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static json_t *worst_json(const against_job *job, int c) {
     json_t *worst = json_object();
     for (int a = 0; a < job->other->axis_count; a++)
-        json_object_set_new(worst, job->other->axes[a].name, number(job->worst_at[c].at[a]));
-    json_object_set_new(worst, "value", number(job->worst_pair[c].value));
-    json_object_set_new(worst, "reference", number(job->worst_pair[c].reference));
+        lq_json_set(&worst, job->other->axes[a].name, lq_json_number(job->worst_at[c].at[a]));
+    lq_json_set(&worst, "value", lq_json_number(job->worst_pair[c].value));
+    lq_json_set(&worst, "reference", lq_json_number(job->worst_pair[c].reference));
     return worst;
 }
 
 static json_t *pattern_json(const against_job *job, const lq_pattern *p) {
     json_t *correlation = json_object();
     for (int a = 0; a < job->other->axis_count; a++)
-        json_object_set_new(correlation, job->other->axes[a].name, number(p->correlation[a]));
+        lq_json_set(&correlation, job->other->axes[a].name, lq_json_number(p->correlation[a]));
     return json_pack("{s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:s}", "spots", (json_int_t)p->spots, "zeros",
-                     (json_int_t)p->zeros, "outliers", (json_int_t)p->outliers, "rms", number(p->rms), "mean",
-                     number(p->mean), "correlation", correlation, "independent", number(p->independent),
-                     "z_mean", number(p->z_mean), "looks_like", lq_verdict_text(p->verdict));
+                     (json_int_t)p->zeros, "outliers", (json_int_t)p->outliers, "rms", lq_json_number(p->rms),
+                     "mean", lq_json_number(p->mean), "correlation", correlation, "independent",
+                     lq_json_number(p->independent), "z_mean", lq_json_number(p->z_mean), "looks_like",
+                     lq_verdict_text(p->verdict));
 }
 
 static json_t *channel_json(const against_job *job, int c) {
     const lq_comparison *r = &job->result[c];
-    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:o}", "max", number(r->max), "rms", number(r->rms),
-                             "mean", number(r->mean), "p99", number(r->p99), "worst", worst_json(job, c));
-    if (root && job->patterned) json_object_set_new(root, "pattern", pattern_json(job, &job->pattern[c]));
+    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:o}", "max", lq_json_number(r->max), "rms",
+                             lq_json_number(r->rms), "mean", lq_json_number(r->mean), "p99",
+                             lq_json_number(r->p99), "worst", worst_json(job, c));
+    if (job->patterned) lq_json_set(&root, "pattern", pattern_json(job, &job->pattern[c]));
     return root;
 }
 
 static json_t *variants_json(const lq_variants *variants) {
     json_t *list = json_array();
     for (size_t i = 0; i < variants->count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:o}", "what", variants->list[i].what, "rms",
-                                              number(variants->list[i].rms)));
+        lq_json_append(&list, json_pack("{s:o, s:o}", "what", lq_json_text(variants->list[i].what), "rms",
+                                        lq_json_number(variants->list[i].rms)));
     return list;
 }
 
 bool against_print_json(const against_job *job) {
-    json_t *root =
-        json_pack("{s:s, s:s, s:s, s:I}", "file", job->request->file, "table", job->origin.kind->id,
-                  "against", job->file ? job->other_name : "exact", "entries", (json_int_t)job->entries);
-    if (!root) return false;
+    json_t *root = json_pack(
+        "{s:o, s:s, s:o, s:I}", "file", lq_json_text(job->request->file), "table", job->origin.kind->id,
+        "against", lq_json_text(job->file ? job->other_name : "exact"), "entries", (json_int_t)job->entries);
     for (int c = 0; c < job->other->channel_count; c++)
-        json_object_set_new(root, job->other->channel_names[c], channel_json(job, c));
+        lq_json_set(&root, job->other->channel_names[c], channel_json(job, c));
     const char *complaint = against_complaint(job);
-    if (job->variants.count > 0) json_object_set_new(root, "definitions", variants_json(&job->variants));
+    if (job->variants.count > 0) lq_json_set(&root, "definitions", variants_json(&job->variants));
     if (job->variants.other)
-        json_object_set_new(root, "looks_like_definition", json_string(job->variants.list[0].what));
-    json_object_set_new(root, "passed", json_boolean(!complaint));
-    json_object_set_new(root, "complaint", complaint ? json_string(complaint) : json_null());
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    printf("\n");
-    json_decref(root);
-    return true;
+        lq_json_set(&root, "looks_like_definition", lq_json_text(job->variants.list[0].what));
+    lq_json_set(&root, "passed", json_boolean(!complaint));
+    lq_json_set(&root, "complaint", complaint ? lq_json_text(complaint) : json_null());
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
 }

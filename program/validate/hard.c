@@ -3,10 +3,10 @@
 #include "program/validate/validate.h"
 
 #include "program/message.h"
+#include "program/output.h"
 #include "program/verb.h"
 #include "validate/hard_cases.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,34 +33,29 @@ static void print_row(hard_report *report, const lq_hard_result *row) {
     printf("  %-56s %-23s %-23s %s\n", row->asked, value, limit, row->passed ? "pass" : "FAIL");
 }
 
-static json_t *number(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static void take_row(void *user, const lq_hard_result *row) {
     hard_report *report = user;
     report->count++;
     report->failed += !row->passed;
     if (!report->json) print_row(report, row);
     else
-        json_array_append_new(
-            report->rows, json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:b}", "group", row->group, "asked",
-                                    row->asked, "least", number(row->least), "most", number(row->most), "low",
-                                    number(row->low), "high", number(row->high), "passed", row->passed));
+        lq_json_append(&report->rows,
+                       json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:b}", "group", row->group, "asked",
+                                 lq_json_text(row->asked), "least", lq_json_number(row->least), "most",
+                                 lq_json_number(row->most), "low", lq_json_number(row->low), "high",
+                                 lq_json_number(row->high), "passed", row->passed));
 }
 
-static void print_end(const hard_report *report, const char *ndf) {
+static bool print_end(const hard_report *report, const char *ndf) {
     if (!report->json) {
         printf("\n%s: %zu of %zu hard cases of %s\n", report->failed ? "FAILED" : "passed",
                report->failed ? report->failed : report->count, report->count, ndf);
-        return;
+        return true;
     }
     json_t *root =
-        json_pack("{s:s, s:I, s:I, s:b, s:O}", "ndf", ndf, "count", (json_int_t)report->count, "failed",
-                  (json_int_t)report->failed, "passed", report->failed == 0, "cases", report->rows);
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
-    printf("\n");
-    json_decref(root);
+        json_pack("{s:o, s:I, s:I, s:b, s:O}", "ndf", lq_json_text(ndf), "count", (json_int_t)report->count,
+                  "failed", (json_int_t)report->failed, "passed", report->failed == 0, "cases", report->rows);
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
 }
 
 int validate_hard_cases(const validate_request *request) {
@@ -76,8 +71,8 @@ int validate_hard_cases(const validate_request *request) {
     lq_error error = {""};
     const lq_status status = lq_hard_cases(&run, &error);
     cli_progress_end(&bar);
-    if (status == LQ_OK) print_end(&report, run.ndf);
+    const bool printed = status != LQ_OK || print_end(&report, run.ndf);
     json_decref(report.rows);
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    return report.failed ? CLI_EXCEEDED : CLI_DONE;
+    return !printed ? CLI_FAILED : report.failed ? CLI_EXCEEDED : CLI_DONE;
 }

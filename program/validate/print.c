@@ -3,7 +3,6 @@
 
 #include "program/output.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -78,62 +77,51 @@ void validate_print_text(const validate_job *job) {
  *                                         JSON
  * ====================================================================================== */
 
-/* JSON knows no infinity: such a number becomes null. */
-static json_t *number(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static json_t *point_json(const validate_job *job, const validate_list *list, size_t i) {
     json_t *point = json_object();
     const lq_drawn *drawn = &list->at[i / job->channels];
     for (int a = 0; a < job->table->axis_count; a++)
-        json_object_set_new(point, job->table->axes[a].name, number(drawn->at[a]));
-    json_object_set_new(point, "channel", json_string(job->table->channel_names[i % job->channels]));
-    json_object_set_new(point, "value", number(list->compared[i].value));
-    json_object_set_new(point, "reference", number(list->compared[i].reference));
-    json_object_set_new(point, "noise", number(list->compared[i].noise));
+        lq_json_set(&point, job->table->axes[a].name, lq_json_number(drawn->at[a]));
+    lq_json_set(&point, "channel", lq_json_text(job->table->channel_names[i % job->channels]));
+    lq_json_set(&point, "value", lq_json_number(list->compared[i].value));
+    lq_json_set(&point, "reference", lq_json_number(list->compared[i].reference));
+    lq_json_set(&point, "noise", lq_json_number(list->compared[i].noise));
     return point;
 }
 
 static json_t *list_json(const validate_job *job, const validate_list *list, bool scored) {
     const lq_comparison *r = &list->result;
-    json_t *root =
-        json_pack("{s:I, s:o, s:o, s:o, s:o}", "count", (json_int_t)r->count, "max", number(r->max), "rms",
-                  number(r->rms), "bias", number(r->mean), "p99", number(r->p99));
-    json_object_set_new(root, "worst", point_json(job, list, r->worst));
-    if (list->judged) json_object_set_new(root, "explained", json_boolean(r->explained));
+    json_t *root = json_pack("{s:I, s:o, s:o, s:o, s:o}", "count", (json_int_t)r->count, "max",
+                             lq_json_number(r->max), "rms", lq_json_number(r->rms), "bias",
+                             lq_json_number(r->mean), "p99", lq_json_number(r->p99));
+    lq_json_set(&root, "worst", point_json(job, list, r->worst));
+    if (list->judged) lq_json_set(&root, "explained", json_boolean(r->explained));
     if (!scored) return root;
-    json_object_set_new(root, "z_max", number(r->z_max));
-    json_object_set_new(root, "z_limit", number(r->z_limit));
-    json_object_set_new(root, "z_bias", number(r->z_bias));
-    json_object_set_new(root, "z2", number(r->z2));
-    json_object_set_new(root, "beyond4", json_integer((json_int_t)r->beyond4));
-    json_object_set_new(root, "beyond4_expected", number(r->beyond4_expected));
-    json_object_set_new(root, "z_worst", point_json(job, list, r->z_worst));
+    lq_json_set(&root, "z_max", lq_json_number(r->z_max));
+    lq_json_set(&root, "z_limit", lq_json_number(r->z_limit));
+    lq_json_set(&root, "z_bias", lq_json_number(r->z_bias));
+    lq_json_set(&root, "z2", lq_json_number(r->z2));
+    lq_json_set(&root, "beyond4", json_integer((json_int_t)r->beyond4));
+    lq_json_set(&root, "beyond4_expected", lq_json_number(r->beyond4_expected));
+    lq_json_set(&root, "z_worst", point_json(job, list, r->z_worst));
     return root;
 }
 
 bool validate_print_json(const validate_job *job) {
-    json_t *root =
-        json_pack("{s:s, s:s, s:s, s:f, s:I, s:I}", "file", job->request.file, "table", job->origin.kind->id,
-                  "ndf", job->origin.settings.ndf, "tolerance", job->origin.settings.tolerance, "points",
-                  (json_int_t)job->request.points, "seed", (json_int_t)job->request.seed);
-    if (!root) return false;
-    if (job->request.walk)
-        json_object_set_new(root, "samples", json_integer((json_int_t)job->request.samples));
-    if (job->request.budget > 0.0) json_object_set_new(root, "budget", json_real(job->request.budget));
+    json_t *root = json_pack("{s:o, s:s, s:o, s:f, s:I, s:I}", "file", lq_json_text(job->request.file),
+                             "table", job->origin.kind->id, "ndf", lq_json_text(job->origin.settings.ndf),
+                             "tolerance", job->origin.settings.tolerance, "points",
+                             (json_int_t)job->request.points, "seed", (json_int_t)job->request.seed);
+    if (job->request.walk) lq_json_set(&root, "samples", json_integer((json_int_t)job->request.samples));
+    if (job->request.budget > 0.0) lq_json_set(&root, "budget", lq_json_number(job->request.budget));
     for (int k = 0; k < VALIDATE_LISTS; k++)
         if (job->lists[k].used)
-            json_object_set_new(root, job->lists[k].key, list_json(job, &job->lists[k], k >= STORED_WALK));
-    json_object_set_new(root, "entries",
-                        json_pack("{s:I, s:I, s:I}", "looked_at", (json_int_t)job->entries.looked_at,
-                                  "faults", (json_int_t)job->entries.faults, "sticking_out",
-                                  (json_int_t)job->suspects));
+            lq_json_set(&root, job->lists[k].key, list_json(job, &job->lists[k], k >= STORED_WALK));
+    lq_json_set(&root, "entries",
+                json_pack("{s:I, s:I, s:I}", "looked_at", (json_int_t)job->entries.looked_at, "faults",
+                          (json_int_t)job->entries.faults, "sticking_out", (json_int_t)job->suspects));
     const char *complaint = validate_complaint(job);
-    json_object_set_new(root, "passed", json_boolean(!complaint));
-    json_object_set_new(root, "complaint", complaint ? json_string(complaint) : json_null());
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    printf("\n");
-    json_decref(root);
-    return true;
+    lq_json_set(&root, "passed", json_boolean(!complaint));
+    lq_json_set(&root, "complaint", complaint ? lq_json_text(complaint) : json_null());
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
 }

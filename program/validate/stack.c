@@ -2,8 +2,8 @@
 #include "program/validate/validate.h"
 
 #include "program/message.h"
+#include "program/output.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -149,39 +149,30 @@ static void print_text(const stack_job *job) {
     printf("\n%s%s\n", why ? "FAILED: " : "passed", why ? why : "");
 }
 
-/* JSON knows no infinity: such a number becomes null. */
-static json_t *number(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static json_t *row_json(const stack_job *job, const stack_row *row) {
     return json_pack("{s:f, s:i, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "mu", job->query.mu[row->mu], "channel",
                      row->channel, "side", sides[row->side], "quantity", quantities[row->quantity], "exact",
-                     number(row->compared.value), "error", number(row->compared.allowance), "walk",
-                     number(row->compared.reference), "noise", number(row->compared.noise), "z",
-                     number(row->z));
+                     lq_json_number(row->compared.value), "error", lq_json_number(row->compared.allowance),
+                     "walk", lq_json_number(row->compared.reference), "noise",
+                     lq_json_number(row->compared.noise), "z", lq_json_number(row->z));
 }
 
 static bool print_json(const stack_job *job) {
     json_t *rows = json_array();
     const char *why = complaint(job);
-    for (size_t i = 0; i < job->count; i++) json_array_append_new(rows, row_json(job, &job->rows[i]));
-    json_t *root =
-        json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:f, s:b, s:o}", "stack", job->stack->name,
-                  "interfaces", interfaces_of(job), "from", cli_sides[job->request->light.from], "samples",
-                  (json_int_t)job->request->samples, "seed", (json_int_t)job->request->seed, "rows", rows,
-                  "z_max", number(fabs(job->rows[job->worst].z)), "z_limit", job->z_limit, "passed", !why,
-                  "complaint", why ? json_string(why) : json_null());
-    if (!root) return false;
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    printf("\n");
-    json_decref(root);
-    return true;
+    for (size_t i = 0; i < job->count; i++) lq_json_append(&rows, row_json(job, &job->rows[i]));
+    json_t *root = json_pack(
+        "{s:o, s:s, s:s, s:I, s:I, s:o, s:o, s:f, s:b, s:o}", "stack", lq_json_text(job->stack->name),
+        "interfaces", interfaces_of(job), "from", cli_sides[job->request->light.from], "samples",
+        (json_int_t)job->request->samples, "seed", (json_int_t)job->request->seed, "rows", rows, "z_max",
+        lq_json_number(fabs(job->rows[job->worst].z)), "z_limit", job->z_limit, "passed", !why, "complaint",
+        why ? lq_json_text(why) : json_null());
+    return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
 }
 
 static int report(const stack_job *job) {
     if (!job->request->json) print_text(job);
-    else if (!print_json(job)) return cli_fail("out of memory");
+    else if (!print_json(job)) return CLI_FAILED;
     return complaint(job) ? CLI_EXCEEDED : CLI_DONE;
 }
 
