@@ -37,8 +37,8 @@ json_t *lq_contents_list(const char *folder) {
     bool fine = files && count >= 0;
     for (int i = 0; i < count; i++) {
         char text[9];
-        fine = fine && lq_contents_checksum(folder, entries[i]->d_name, text) &&
-               json_object_set_new(files, entries[i]->d_name, json_string(text)) == 0;
+        fine = fine && lq_contents_checksum(folder, entries[i]->d_name, text);
+        if (fine) lq_json_set(&files, entries[i]->d_name, json_string(text));
         free(entries[i]);
     }
     free(entries);

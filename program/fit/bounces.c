@@ -80,8 +80,9 @@ static json_t *row_of(const fit_job *job, double alpha, int n, double mean, doub
     printf("%6g %3d  %.5f +- %.5f   %.5f %+6.2f %%   %.5f %+6.2f %%   %.5f %+6.2f %%\n", alpha, n, mean,
            sigma, exact, 100.0 * (exact / mean - 1.0), fitted, 100.0 * (fitted / mean - 1.0), paper,
            100.0 * (paper / mean - 1.0));
-    return json_pack("{s:f, s:i, s:f, s:f, s:f, s:f, s:f}", "alpha", alpha, "bounces", n, "simulated", mean,
-                     "standard-error", sigma, "exact-f", exact, "fit", fitted, "published", paper);
+    return json_pack("{s:f, s:i, s:o, s:o, s:o, s:o, s:o}", "alpha", alpha, "bounces", n, "simulated",
+                     lq_json_number(mean), "standard-error", lq_json_number(sigma), "exact-f",
+                     lq_json_number(exact), "fit", lq_json_number(fitted), "published", lq_json_number(paper));
 }
 
 json_t *fit_bounces(const fit_job *job, size_t samples) {
@@ -108,6 +109,7 @@ json_t *fit_bounces(const fit_job *job, size_t samples) {
             const double sigma = sqrt((all[a].square[k] / count - mean * mean) / count);
             lq_json_append(&rows, row_of(job, alphas[a], counts[k], mean, sigma));
         }
+    if (!rows) cli_message("no memory for the rows");
     return rows;
 }
 
@@ -246,5 +248,6 @@ json_t *fit_anisotropic(const fit_job *job, size_t samples) {
                                         found[i].yy, found[i].xy, "predicted-alpha", equal[i].ax, equal[i].ay,
                                         "predicted", claimed[i].xx, claimed[i].yy, claimed[i].xy));
     }
+    if (!rows) cli_message("no memory for the rows");
     return rows;
 }

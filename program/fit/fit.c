@@ -196,7 +196,7 @@ static bool tabulate(const fit_job *job) {
     json_t *rows = request->table == FIT_BOUNCES       ? fit_bounces(job, samples)
                    : request->table == FIT_ANISOTROPIC ? fit_anisotropic(job, samples)
                                                        : fit_transmitted(job);
-    if (!rows) return false;
+    if (!rows) return false; /* a line was printed */
     if (request->output)
         return fit_write_rows(job, names[request->table], request->table == FIT_TRANSMITTED ? 0 : samples,
                               rows);

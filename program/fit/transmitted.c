@@ -3,6 +3,7 @@
 #include "fit/transmission.h"
 #include "microfacet/lobe.h"
 #include "program/fit/bounces.h"
+#include "program/message.h"
 
 #include <math.h>
 
@@ -19,8 +20,8 @@ static json_t *lobe_row(const fit_job *job, double eta, double mu, double alpha)
     printf("%6.4f  %4.2f  %4.2f  %6.4f  %.4e +- %.0e", eta, mu, alpha, passed, v, estimate);
     if (isfinite(scale)) printf("   %.4e %+8.1f %%\n", narrow, 100.0 * (narrow / v - 1.0));
     else printf("   total reflection\n");
-    return json_pack("{s:f, s:f, s:f, s:f, s:o, s:o, s:o}", "eta", eta, "mu", mu, "alpha", alpha, "passed",
-                     passed, "variance", lq_json_number(v), "error-estimate", lq_json_number(estimate),
+    return json_pack("{s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "eta", eta, "mu", mu, "alpha", alpha, "passed",
+                     lq_json_number(passed), "variance", lq_json_number(v), "error-estimate", lq_json_number(estimate),
                      "equation-10", lq_json_number(isfinite(scale) ? narrow : NAN));
 }
 
@@ -31,9 +32,9 @@ static json_t *disc_row(const fit_job *job, double eta) {
     const double after = lq_transmitted_lobe_variance(job->ndf, beta, 0.0, eta, &estimate);
     printf("%6.4f  %.6f +- %.0e   %.6f   %.6f\n", eta, after / before, estimate / before, 1.0 / (eta * eta),
            eta);
-    return json_pack("{s:f, s:f, s:f, s:f, s:f}", "eta", eta, "scale-of-variance", after / before,
-                     "error-estimate", estimate / before, "eta12-squared", 1.0 / (eta * eta), "equation-13",
-                     eta);
+    return json_pack("{s:f, s:o, s:o, s:f, s:f}", "eta", eta, "scale-of-variance",
+                     lq_json_number(after / before), "error-estimate", lq_json_number(estimate / before),
+                     "eta12-squared", 1.0 / (eta * eta), "equation-13", eta);
 }
 
 json_t *fit_transmitted(const fit_job *job) {
@@ -50,5 +51,6 @@ json_t *fit_transmitted(const fit_job *job) {
            "eta12^2,\n"
            "and B18 eq. 13's 1/eta12\n   eta  measured              eta12^2    1/eta12\n");
     for (int e = COUNT(etas) / 2; e < COUNT(etas); e++) lq_json_append(&rows, disc_row(job, etas[e]));
+    if (!rows) cli_message("no memory for the rows");
     return rows;
 }
