@@ -4,6 +4,7 @@
 #include "fit/bounce.h"
 #include "microfacet/lobe.h"
 #include "microfacet/root.h"
+#include "system/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,7 +52,7 @@ static lq_status measure(lq_curve *curve, lq_error *error) {
     double worst = 0.0;
     for (int j = 0; j < COUNT; j++) {
         if (!(v1[j] > 0.0 && v2[j] > 0.0 && v2[j] <= 1.0)) {
-            snprintf(error->text, sizeof error->text,
+            lq_print(error->text, sizeof error->text,
                      "NDF '%.100s' gives variances no lobe has: v1 = %g, v2 = %g", curve->ndf->id, v1[j],
                      v2[j]);
             return LQ_NOT_CONVERGED;
@@ -151,7 +152,7 @@ static double find_pole(const lq_curve *curve) {
 lq_status lq_curve_make(lq_curve *curve, const lq_ndf *ndf, lq_error *error) {
     curve->ndf = ndf;
     if (ndf->alpha_min > LQ_CURVE_LEAST || (ndf->alpha_max > 0.0 && ndf->alpha_max < 1.0)) {
-        snprintf(error->text, sizeof error->text,
+        lq_print(error->text, sizeof error->text,
                  "NDF '%.100s' has roughnesses from %g to %g: its mapping is a limit at alpha = 0 and needs "
                  "all of (0, 1]",
                  ndf->id, ndf->alpha_min, ndf->alpha_max);
@@ -160,7 +161,7 @@ lq_status lq_curve_make(lq_curve *curve, const lq_ndf *ndf, lq_error *error) {
     lq_status status = measure(curve, error);
     if (status != LQ_OK) return status;
     if (lq_lobe_variance(ndf, LQ_CURVE_LEAST) > 1e-3) {
-        snprintf(error->text, sizeof error->text,
+        lq_print(error->text, sizeof error->text,
                  "NDF '%.100s': v1(%g) = %.3g is not small, its mapping has no limit at alpha = 0", ndf->id,
                  LQ_CURVE_LEAST, lq_lobe_variance(ndf, LQ_CURVE_LEAST));
         return LQ_BAD_INPUT;
@@ -173,7 +174,7 @@ lq_status lq_curve_make(lq_curve *curve, const lq_ndf *ndf, lq_error *error) {
             lq_curve_limit(curve, from_logit(curve, low + (high - low) * i / (LQ_CURVE_NODES - 1)), NULL));
     for (int i = 1; i < LQ_CURVE_NODES; i++)
         if (!(curve->log_f[i] > curve->log_f[i - 1])) {
-            snprintf(error->text, sizeof error->text, "NDF '%.100s': f does not rise near alpha = %g",
+            lq_print(error->text, sizeof error->text, "NDF '%.100s': f does not rise near alpha = %g",
                      ndf->id, from_logit(curve, low + (high - low) * i / (LQ_CURVE_NODES - 1)));
             return LQ_NOT_CONVERGED;
         }

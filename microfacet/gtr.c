@@ -8,6 +8,7 @@
 #include "microfacet/gtr.h"
 
 #include "microfacet/profile.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <math.h>
@@ -66,7 +67,7 @@ lq_status lq_gtr_open(const lq_ndf **ndf, double gamma, lq_error *error) {
     gtr *g = calloc(1, sizeof *g);
     if (!g) return lq_fail(error, LQ_NO_MEMORY, "no memory for an NDF");
     g->gamma = gamma;
-    snprintf(g->id, sizeof g->id, "gtr:gamma=%.15g", gamma);
+    lq_print(g->id, sizeof g->id, "gtr:gamma=%.15g", gamma);
     g->profiled.ndf = (lq_ndf){.id = g->id,
                                .title = "GTR: generalised Trowbridge-Reitz",
                                .source = "Burley 2012, sec. 5.4 and app. B",

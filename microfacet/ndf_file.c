@@ -11,6 +11,7 @@
 
 #include "microfacet/ndf_samples.h"
 #include "system/input.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <errno.h>
@@ -63,7 +64,7 @@ static char *next_field(char **rest) {
 
 static bool number(const char *text, double *value) {
     char *end;
-    *value = strtod(text, &end);
+    *value = lq_strtod(text, &end);
     return end != text && *end == '\0';
 }
 
@@ -153,7 +154,7 @@ static lq_status read_all(reader *r) {
         memmove(r->text, r->text + 3, strlen(r->text + 3) + 1);
     double first;
     char *end;
-    first = strtod(r->text, &end);
+    first = lq_strtod(r->text, &end);
     (void)first;
     const bool header = end == r->text && *r->text != ',';
     lq_status status = LQ_OK;

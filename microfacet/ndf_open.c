@@ -3,6 +3,7 @@
 #include "microfacet/ndf.h"
 #include "microfacet/ndf_file.h"
 #include "microfacet/student_t.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@ typedef struct family {
 static lq_status read_gamma(const family *of, const char *text, double *gamma, lq_error *error) {
     static const char name[] = "gamma=";
     char *end = NULL;
-    if (text && strncmp(text, name, sizeof name - 1) == 0) *gamma = strtod(text + sizeof name - 1, &end);
+    if (text && strncmp(text, name, sizeof name - 1) == 0) *gamma = lq_strtod(text + sizeof name - 1, &end);
     if (end && end > text + sizeof name - 1 && *end == '\0') return LQ_OK;
     return lq_fail(error, LQ_BAD_INPUT, "NDF '%s%s%s' is not read; write %s", of->id, text ? ":" : "",
                    text ? text : "", of->syntax);

@@ -1,6 +1,7 @@
 /* NDFs compiled by their user: a shared object that exports one function (lacquer.h, "Plugins"). */
 #include "microfacet/ndf_file.h"
 #include "microfacet/profile.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <dlfcn.h>
@@ -92,7 +93,7 @@ static lq_status start(loaded *l, lq_error *error) {
     const lq_status status = lq_ndf_prepare(&l->profiled.ndf, p->alpha_max, error);
     if (status != LQ_OK) return status;
     const lq_profile *widest = lq_profiled_at(&l->profiled, p->alpha_max);
-    snprintf(l->note, sizeof l->note, "%s: %s; D scaled by %.6g at alpha = %g", l->path.path,
+    lq_print(l->note, sizeof l->note, "%s: %s; D scaled by %.6g at alpha = %g", l->path.path,
              l->profiled.ndf.title, widest->factor, p->alpha_max);
     for (char *c = l->note; *c; c++)
         if ((unsigned char)*c < ' ') *c = ' ';

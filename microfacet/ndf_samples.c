@@ -2,6 +2,7 @@
 #include "microfacet/ndf_samples.h"
 
 #include "microfacet/profile.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <math.h>
@@ -201,8 +202,8 @@ static bool copy_samples(sampled *s, const lq_ndf_samples *from) {
 /* One roughness: that of the GGX whose slopes have the same median. Rounded, so that a text can hold it. */
 static double median_roughness(double theta) {
     char text[32];
-    snprintf(text, sizeof text, "%.4g", fmin(fmax(tan(theta), 1e-3), 1.0));
-    return strtod(text, NULL);
+    lq_print(text, sizeof text, "%.4g", fmin(fmax(tan(theta), 1e-3), 1.0));
+    return lq_strtod(text, NULL);
 }
 
 static void describe(sampled *s, const char *name) {
@@ -215,18 +216,18 @@ static void describe(sampled *s, const char *name) {
         median = held.median;
     }
     const double last = 180.0 / pi * s->theta[s->count - 1];
-    const int used = s->columns == 1 ? snprintf(s->note, sizeof s->note, "%s: D scaled by %.6g", name, most)
-                                     : snprintf(s->note, sizeof s->note, "%s: D scaled by %.6g to %.6g", name,
+    const int used = s->columns == 1 ? lq_print(s->note, sizeof s->note, "%s: D scaled by %.6g", name, most)
+                                     : lq_print(s->note, sizeof s->note, "%s: D scaled by %.6g to %.6g", name,
                                                 least, most);
     size_t at = used > 0 && (size_t)used < sizeof s->note ? (size_t)used : sizeof s->note - 1;
     if (beyond > 0.0)
-        at += (size_t)snprintf(s->note + at, sizeof s->note - at,
+        at += (size_t)lq_print(s->note + at, sizeof s->note - at,
                                "; %.2g of it lies beyond %.4g degrees, extrapolated", beyond, last);
     lq_ndf *ndf = &s->profiled.ndf;
     if (s->columns == 1) {
         ndf->alpha_min = ndf->alpha_max = median_roughness(median);
         if (at < sizeof s->note)
-            snprintf(s->note + at, sizeof s->note - at, "; one roughness, alpha = %g by its median slope",
+            lq_print(s->note + at, sizeof s->note - at, "; one roughness, alpha = %g by its median slope",
                      ndf->alpha_min);
     } else {
         ndf->alpha_min = s->alpha[0];

@@ -8,6 +8,7 @@
 #include "microfacet/student_t.h"
 
 #include "microfacet/profile.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <math.h>
@@ -90,7 +91,7 @@ lq_status lq_student_t_open(const lq_ndf **ndf, double gamma, lq_error *error) {
     if (!t) return lq_fail(error, LQ_NO_MEMORY, "no memory for an NDF");
     t->gamma = gamma;
     t->marginal = exp(lgamma(gamma - 0.5) - lgamma(gamma - 1.0)) / root_pi;
-    snprintf(t->id, sizeof t->id, "student-t:gamma=%.15g", gamma);
+    lq_print(t->id, sizeof t->id, "student-t:gamma=%.15g", gamma);
     t->profiled.exact_area = exact_area;
     t->profiled.ndf = (lq_ndf){.id = t->id,
                                .title = "Student-t slopes",

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/output.h"
 #include "system/status.h"
 
@@ -376,7 +377,9 @@ lq_status lq_atlas_source_text(lq_language language, const lq_atlas_contents *co
     *text = NULL;
     FILE *out = open_memstream(text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
+    const locale_t before = lq_locale_c();
     say_all(out, language, contents);
+    lq_locale_back(before);
     if (fclose(out) == 0) return LQ_OK;
     free(*text);
     *text = NULL;

@@ -1,6 +1,8 @@
 /* language.c - what shading languages call the same things. */
 #include "pack/language.h"
 
+#include "system/number.h"
+
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -170,15 +172,15 @@ void lq_say(FILE *out, lq_language language, const char *format, ...) {
     char text[LQ_SAY_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    lq_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     expand(out, language, text);
 }
 
 const char *lq_literal(double value, lq_language language, char text[LQ_LITERAL_SIZE]) {
     for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, LQ_LITERAL_SIZE - 4, "%.*g", digits, value);
-        if (strtof(text, NULL) == (float)value) break;
+        lq_print(text, LQ_LITERAL_SIZE - 4, "%.*g", digits, value);
+        if (lq_strtof(text, NULL) == (float)value) break;
     }
     if (!strpbrk(text, ".e")) strcat(text, ".0");
     return strcat(text, all[language].f);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/status.h"
 #include "tables/axis.h"
 
@@ -376,7 +377,7 @@ static lq_status set_axis(lq_axis *axis, const char *name, double min, double ma
                           lq_error *error) {
     static const char *const maps[MAPS] = {"", ":sqrt", ":power3"};
     char text[96];
-    snprintf(text, sizeof text, "%.17g:%.17g:%zu%s", min, max, size, maps[map]);
+    lq_print(text, sizeof text, "%.17g:%.17g:%zu%s", min, max, size, maps[map]);
     return lq_axis_parse(axis, name, text, error);
 }
 

@@ -4,6 +4,7 @@
 #include "fit/curve.h"
 #include "fit/phase.h"
 #include "microfacet/lobe.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <math.h>
@@ -76,7 +77,7 @@ static lq_status fill(const lq_kind *kind, const lq_curve *curve, lq_table *tabl
 
 static lq_status set_facts(const lq_kind *kind, const lq_curve *curve, lq_table *table, lq_error *error) {
     char accuracy[32];
-    snprintf(accuracy, sizeof accuracy, "%.1e", curve->accuracy);
+    lq_print(accuracy, sizeof accuracy, "%.1e", curve->accuracy);
     const struct {
         const char *key, *value;
     } facts[] = {{"mapping", kind->id},       {"title", kind->title},           {"quantity", kind->quantity},

@@ -1,6 +1,7 @@
 /* recipe_text.c - values of a recipe, and what is wrong with them, with the line. */
 #include "pack/recipe_text.h"
 
+#include "system/number.h"
 #include "system/status.h"
 
 #include <stdio.h>
@@ -68,7 +69,7 @@ lq_status lq_recipe_number(const lq_recipe_reader *r, json_t *object, const char
     json_t *item = json_object_get(object, key);
     char accepted[64];
     if (!item) return LQ_OK;
-    snprintf(accepted, sizeof accepted, "a number from %g to %g", lowest, highest);
+    lq_print(accepted, sizeof accepted, "a number from %g to %g", lowest, highest);
     if (!json_is_number(item)) return lq_refuse_value(r, key, accepted);
     *value = json_number_value(item);
     return *value >= lowest && *value <= highest ? LQ_OK : lq_refuse_value(r, key, accepted);

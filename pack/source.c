@@ -6,6 +6,7 @@
 
 #include "pack/factored.h"
 #include "pack/source_text.h"
+#include "system/number.h"
 #include "system/output.h"
 #include "system/status.h"
 
@@ -174,6 +175,7 @@ lq_status lq_source_write(lq_language language, const lq_source_table *tables, s
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
+    const locale_t before = lq_locale_c();
     fputs("/* Decode functions, made by lacquer " LQ_VERSION ". */\n", out);
     lq_print_helpers(out, language);
     for (size_t i = 0; i < count; i++) {
@@ -185,6 +187,7 @@ lq_status lq_source_write(lq_language language, const lq_source_table *tables, s
         else print_shader(out, texture, language);
     }
     fputs("\n#endif\n", out);
+    lq_locale_back(before);
     lq_status status = fclose(out) == 0 ? lq_output_save(path, text, size, error)
                                         : lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
     free(text);

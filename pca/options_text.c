@@ -1,6 +1,7 @@
 /* options_text.c - "tau:2,alpha:4", "mu=64:sqrt" and their like into lq_pca_options. */
 #include "pca/options_text.h"
 
+#include "system/number.h"
 #include "system/status.h"
 
 #include <stdio.h>
@@ -32,7 +33,7 @@ static lq_status read_count(const char *text, size_t length, size_t lowest, size
 static lq_status read_number(const char *text, size_t length, double lowest, double highest, double *value,
                              lq_error *error) {
     char *end;
-    *value = strtod(text, &end);
+    *value = lq_strtod(text, &end);
     if (length > 0 && end == text + length && *value >= lowest && *value <= highest) return LQ_OK;
     return lq_fail(error, LQ_BAD_INPUT, "'%.*s' is not a number from %g to %g", (int)length, text, lowest,
                    highest);

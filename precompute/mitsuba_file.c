@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "microfacet/gauss.h"
+#include "system/number.h"
 #include "system/status.h"
 
 enum { MU, ALPHA, ETA, TAU, AXES };
@@ -73,7 +74,7 @@ static lq_status compute_part(const lq_kind *kind, const lq_settings *settings, 
     const lq_status status =
         lq_precompute(kind, settings, axes, progress && progress->report ? &shared : NULL, table, error);
     const char *fact = *table ? lq_table_fact(*table, "error") : NULL;
-    *estimate = fmax(*estimate, fact ? strtod(fact, NULL) : 0.0);
+    *estimate = fmax(*estimate, fact ? lq_strtod(fact, NULL) : 0.0);
     return status;
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/status.h"
 
 enum {
@@ -46,7 +47,7 @@ bool lq_parameter_accepts(const lq_parameter *p, double value) {
 }
 
 void lq_parameter_range_text(const lq_parameter *p, char *text, size_t size) {
-    snprintf(text, size, "%g <%s %s <%s %g", p->lowest, p->open_low ? "" : "=", p->name,
+    lq_print(text, size, "%g <%s %s <%s %g", p->lowest, p->open_low ? "" : "=", p->name,
              p->open_high ? "" : "=", p->highest);
 }
 

@@ -11,6 +11,7 @@
 #include "stack/reader.h"
 #include "system/input.h"
 #include "system/json.h"
+#include "system/number.h"
 #include "system/status.h"
 
 typedef struct reader {
@@ -36,7 +37,7 @@ static lq_status refuse(const reader *r, const char *key, const char *format, ..
     }
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    lq_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     if (r->layer > 0) {
         steps[count++] = (lq_json_step){.key = "layers"};

@@ -1,23 +1,20 @@
 /* writer.c - a stack back as JSON text: what a table's facts record. */
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "stack/description.h"
+#include "system/number.h"
 #include "system/status.h"
 
-/* The shortest text that reads as the same double; JSON has a point in every locale. */
+/* The shortest text that reads as the same double. */
 static void put_number(FILE *out, double value) {
     char text[40];
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) break;
+        lq_print(text, sizeof text, "%.*g", digits, value);
+        if (lq_strtod(text, NULL) == value) break;
     }
-    const char *point = localeconv()->decimal_point;
-    char *found = strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
-    if (!found) fputs(text, out);
-    else fprintf(out, "%.*s.%s", (int)(found - text), text, found + strlen(point));
+    fputs(text, out);
 }
 
 static void put_string(FILE *out, const char *text) {

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "system/number.h"
 #include "system/status.h"
 
 /* Lines of text are some 50 bytes: one system call for a thousand of them. */
@@ -208,7 +209,9 @@ lq_status lq_output_print(lq_output *output, lq_error *error, const char *format
     char *text;
     va_list arguments;
     va_start(arguments, format);
+    const locale_t before = lq_locale_c();
     int length = vasprintf(&text, format, arguments);
+    lq_locale_back(before);
     va_end(arguments);
     if (length < 0) return lq_fail(error, LQ_NO_MEMORY, "%s: no memory to write it", output->path);
     lq_status status = lq_output_write(output, text, (size_t)length, error);

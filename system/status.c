@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/text.h"
 
 static size_t tidy(char *text, size_t length) {
@@ -20,7 +21,7 @@ lq_status lq_fail(lq_error *error, lq_status status, const char *format, ...) {
     char text[LQ_MESSAGE_SIZE]; /* not error->text: it may be among the arguments */
     va_list arguments;
     va_start(arguments, format);
-    int wanted = vsnprintf(text, sizeof text, format, arguments);
+    int wanted = lq_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     size_t length = wanted < 0 ? 0 : (size_t)wanted;
     if (length >= sizeof text) length = lq_text_whole(text, sizeof text - 1);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/status.h"
 
 #define AXIS_FORMS                                                                                           \
@@ -17,7 +18,8 @@
 /* ------------------------------------------------------------------ names */
 
 static bool name_character(char c) {
-    return isalnum((unsigned char)c) || c == '_' || c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
 }
 
 lq_status lq_name_check(const char *what, const char *name, lq_error *error) {
@@ -250,7 +252,7 @@ static lq_status refuse(const char *name, const char *part, const char *cause, l
 static bool parse_number(const char *text, double *value) {
     char *end;
     if (!*text || isspace((unsigned char)*text)) return false;
-    *value = strtod(text, &end);
+    *value = lq_strtod(text, &end);
     return !*end;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "system/json.h"
+#include "system/number.h"
 #include "system/status.h"
 #include "tables/axis.h"
 #include "tables/raw.h"
@@ -160,7 +161,7 @@ static lq_status set_facts(const description *d, lq_table *table, lq_error *erro
         {"ndf", "ggx"}, {"scattering", "multiple"}, {"masking", "correlated"}, {"tolerance", NULL}};
     char tolerance[32];
     const json_t *stated = json_object_get(d->root, "tolerance");
-    snprintf(tolerance, sizeof tolerance, "%g",
+    lq_print(tolerance, sizeof tolerance, "%g",
              json_is_number(stated) ? json_number_value(stated) : d->kind->tolerance);
     lq_status status = lq_table_set_fact(table, "table", d->kind->id, error);
     for (size_t i = 0; status == LQ_OK && i < sizeof keys / sizeof keys[0]; i++) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/status.h"
 #include "tables/axis.h"
 
@@ -57,7 +58,7 @@ void lq_facts_free(lq_fact *facts, size_t count) {
 
 lq_status lq_table_set_number(lq_table *table, const char *key, double value, lq_error *error) {
     char text[32];
-    snprintf(text, sizeof text, "%.3g", value);
+    lq_print(text, sizeof text, "%.3g", value);
     return lq_table_set_fact(table, key, text, error);
 }
 

@@ -1,6 +1,7 @@
 /* Rebuilds kind and settings from the facts of a table, refusing what it does not understand. */
 #include "tables/origin.h"
 
+#include "system/number.h"
 #include "system/status.h"
 #include "tables/facts.h"
 
@@ -34,7 +35,7 @@ static lq_status read_tolerance(const facts *from, double *tolerance, lq_error *
     const char *text = fact(from, "tolerance");
     if (!text) return lq_fail(error, LQ_FORMAT, "the table does not say its tolerance");
     char *end;
-    *tolerance = strtod(text, &end);
+    *tolerance = lq_strtod(text, &end);
     if (end == text || *end || !(*tolerance > 0.0 && *tolerance <= 1.0))
         return lq_fail(error, LQ_FORMAT, "tolerance '%s' in the table is not a number in (0, 1]", text);
     return LQ_OK;

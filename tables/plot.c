@@ -1,6 +1,7 @@
 /* The SVG plotter: scales and ticks first, then the parts of the page from back to front. */
 #include "tables/plot.h"
 
+#include "system/number.h"
 #include "system/status.h"
 #include "system/stream.h"
 
@@ -120,8 +121,8 @@ void lq_plot_power(char *text, int power) {
 /* A tick at `at`: 1, 10, 100 or 10 to a superscript power on a logarithmic axis, otherwise a plain number. */
 static void format_tick(char *text, const scale *s, double at) {
     const double power = round(at);
-    if (!s->logarithmic) snprintf(text, 24, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
-    else if (power >= 0.0 && power <= 2.0) snprintf(text, 24, "%.0f", pow(10.0, power));
+    if (!s->logarithmic) lq_print(text, 24, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
+    else if (power >= 0.0 && power <= 2.0) lq_print(text, 24, "%.0f", pow(10.0, power));
     else lq_plot_power(text, (int)power);
 }
 
@@ -171,7 +172,7 @@ static void draw_axes(FILE *out, const lq_plot *plot, const scale *x, const scal
              plot->x.label);
     char place[128];
     const double middle = 0.5 * (top + height - bottom);
-    snprintf(place, sizeof place, "class=\"ink\" text-anchor=\"middle\" transform=\"rotate(-90 22 %.1f)\"",
+    lq_print(place, sizeof place, "class=\"ink\" text-anchor=\"middle\" transform=\"rotate(-90 22 %.1f)\"",
              middle);
     put_line(out, 22, middle, place, plot->y.label);
 }

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "system/input.h"
+#include "system/number.h"
 #include "system/status.h"
 #include "tables/half.h"
 #include "tables/raw.h"
@@ -97,7 +98,7 @@ static lq_status read_array(lq_raw *raw, const char *path, char *text, lq_error 
             continue;
         }
         char *end;
-        raw->values[raw->count] = strtof(at, &end);
+        raw->values[raw->count] = lq_strtof(at, &end);
         if (end == at) return lq_fail(error, LQ_FORMAT, "%s: '%.12s' is not a number of a C array", path, at);
         raw->count++;
         at = end + strspn(end, "fFlL");

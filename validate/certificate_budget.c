@@ -2,6 +2,7 @@
 #include "validate/certificate_budget.h"
 
 #include "system/json.h"
+#include "system/number.h"
 #include "system/status.h"
 
 #include <errno.h>
@@ -31,7 +32,7 @@ lq_status lq_budget_parse(lq_budget *budget, const char *text, lq_error *error) 
         const lq_norm norm = *equals == '=' ? norm_of(at, (size_t)(equals - at)) : LQ_NORM_MAX;
         const char *number = *equals == '=' ? equals + 1 : at;
         char *end;
-        const double bound = strtod(number, &end);
+        const double bound = lq_strtod(number, &end);
         if (norm == LQ_NORMS || end == number || (*end && *end != ',') || !(bound > 0.0 && bound <= 1.0))
             return lq_fail(error, LQ_BAD_INPUT,
                            "budget '%s' is not understood; accepted: a number in (0, 1], a list such as "
@@ -57,18 +58,28 @@ static lq_status add_range(lq_rule *rule, const char *axis, size_t length, doubl
     return LQ_OK;
 }
 
+/* "=0.02:1", and what ends it. */
+static bool read_range(const char *text, double *min, double *max, size_t *used) {
+    char *colon, *end;
+    if (*text != '=') return false;
+    *min = lq_strtod(text + 1, &colon);
+    if (colon == text + 1 || *colon != ':') return false;
+    *max = lq_strtod(colon + 1, &end);
+    *used = (size_t)(end - text);
+    return end != colon + 1 && (!*end || *end == ',');
+}
+
 lq_status lq_ranges_parse(lq_rule *rule, const char *text, lq_error *error) {
     for (const char *at = text;; at++) {
         const size_t length = strcspn(at, "=");
         double min, max;
-        int used = 0;
-        if (at[length] != '=' || sscanf(at + length, "=%lf:%lf%n", &min, &max, &used) != 2 ||
-            (at[length + (size_t)used] && at[length + (size_t)used] != ','))
+        size_t used;
+        if (!read_range(at + length, &min, &max, &used))
             return lq_fail(error, LQ_BAD_INPUT,
                            "domain '%s' is not understood; accepted: mu=0.02:1,tau=0.02:1", text);
         const lq_status status = add_range(rule, at, length, min, max, error);
         if (status != LQ_OK) return status;
-        at += length + (size_t)used;
+        at += length + used;
         if (!*at) return LQ_OK;
     }
 }

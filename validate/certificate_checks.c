@@ -2,6 +2,7 @@
 #include "validate/certificate_checks.h"
 
 #include "precompute/evaluator.h"
+#include "system/number.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -31,7 +32,7 @@ void lq_check_add(lq_certified *certified, const char *name, double value, doubl
     if (!format) return;
     va_list list;
     va_start(list, format);
-    vsnprintf(check->detail, sizeof check->detail, format, list);
+    lq_vprint(check->detail, sizeof check->detail, format, list);
     va_end(list);
 }
 
@@ -39,7 +40,7 @@ void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t 
     size_t used = 0;
     if (size > 0) text[0] = '\0';
     for (int a = 0; a < kind->axis_count && used < size; a++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%.5g", a ? " " : "", kind->axes[a].name,
+        used += (size_t)lq_print(text + used, size - used, "%s%s=%.5g", a ? " " : "", kind->axes[a].name,
                                  point[a]);
 }
 

@@ -1,6 +1,7 @@
 /* Hard cases: single points against their limits, and whole grids of ends and limits against their range. */
 #include "validate/hard_cases.h"
 
+#include "system/number.h"
 #include "system/status.h"
 #include "validate/hard_cases_list.h"
 #include "validate/smooth_limit.h"
@@ -56,7 +57,7 @@ static lq_status value_at(const lq_hard_run *run, const lq_kind *kind, const dou
 static void describe(const lq_kind *kind, const double *point, char *text, size_t size) {
     size_t used = (size_t)snprintf(text, size, "%s", kind->id);
     for (int a = 0; a < kind->axis_count && used < size; a++)
-        used += (size_t)snprintf(text + used, size - used, " %s=%.8g", kind->axes[a].name, point[a]);
+        used += (size_t)lq_print(text + used, size - used, " %s=%.8g", kind->axes[a].name, point[a]);
 }
 
 static lq_status limit_of(const lq_hard_run *run, const hard_case *hard, const lq_kind *kind, double *limit,
@@ -144,7 +145,7 @@ static void judge_ranges(const lq_hard_run *run, const lq_kind *kind, const lq_t
     for (int a = 0; a < table->axis_count; a++)
         for (size_t node = 0; node < table->axes[a].size; node++) {
             lq_hard_result result = {.group = "range", .low = kind->value_min, .high = kind->value_max};
-            snprintf(result.asked, sizeof result.asked, "%s %s=%.8g, %zu values", kind->id,
+            lq_print(result.asked, sizeof result.asked, "%s %s=%.8g, %zu values", kind->id,
                      table->axes[a].name, table->axes[a].nodes[node],
                      lq_table_entries(table) / table->axes[a].size * (size_t)table->channel_count);
             range_of(table, a, node, &result.least, &result.most);
@@ -155,7 +156,7 @@ static void judge_ranges(const lq_hard_run *run, const lq_kind *kind, const lq_t
 /* The solver's own estimate of its largest error there. */
 static void judge_estimate(const lq_hard_run *run, const lq_kind *kind, const lq_table *table) {
     const char *fact = lq_table_fact(table, "error");
-    const double estimate = fact ? strtod(fact, NULL) : NAN;
+    const double estimate = fact ? lq_strtod(fact, NULL) : NAN;
     lq_hard_result result = {"error estimate", "", estimate, estimate, 0.0, grid_tolerance(kind), false};
     snprintf(result.asked, sizeof result.asked, "%s, %zu points", kind->id, lq_table_entries(table));
     judge(run, &result);
