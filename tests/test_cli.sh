@@ -212,6 +212,14 @@ run 0 eval fgd "${point[@]}" --format csv
 run 0 eval fgd mu=1 alpha=1 n=0.2 kappa=3.9 --orders 3
 [ "$(grep -c '^order [123]: ' files/out)" -eq 3 ] || fail "orders: $(cat files/out)"
 
+# What takes long near eta = 1 says so before the work, once, and nothing else does.
+run 0 eval fgd-dielectric mu=0.5 alpha=0.1 eta=0.9995
+grep -q '^lacquer eval: note: eta = 0.9995 is nearly 1: 1 pair ' files/err || fail "eta near 1: $(cat files/err)"
+run 0 precompute fgd-dielectric --axis mu=0.5 --axis alpha=0,0.05,0.1 --axis eta=1,1.0005,1.5 -o files/near.exr
+grep -q 'eta = 1.0005 is nearly 1: 2 pairs' files/err || fail "a table near 1: $(cat files/err)"
+run 0 eval fgd-dielectric mu=0.5 alpha=0.1 eta=1.01
+[ ! -s files/err ] || fail "eta = 1.01: $(cat files/err)"
+
 # --------------------------------------------------------------------------------------- CSV
 csv() { # CODE INPUT PATTERN: the message, or the first row of the output
     local got=0

@@ -1,6 +1,7 @@
 /* csv.c - points as CSV on stdin, computed on all cores in batches, written in their order. */
 #include "program/eval/eval.h"
 
+#include "program/matched.h"
 #include "program/message.h"
 #include "program/verb.h"
 #include "system/status.h"
@@ -30,6 +31,7 @@ typedef struct csv_stream {
     bool ended;
     bool failed; /* ended by an error; `error` says which */
     lq_error error;
+    bool warned;   /* that some points take long */
     size_t missed; /* points whose estimate is above the tolerance */
     csv_row rows[BATCH];
 } csv_stream;
@@ -180,6 +182,12 @@ static int finish(const csv_stream *stream) {
     return CLI_EXCEEDED;
 }
 
+/* Once, before the first. */
+static void warn(csv_stream *stream, const csv_row *row) {
+    if (!stream->source->kind || stream->warned) return;
+    stream->warned = cli_warn_matched_at(stream->source->kind, row->point.at);
+}
+
 int eval_csv(const eval_source *source, FILE *in) {
     csv_stream *stream = calloc(1, sizeof *stream);
     if (!stream) return cli_fail("out of memory");
@@ -189,7 +197,7 @@ int eval_csv(const eval_source *source, FILE *in) {
     if (!stream->failed) write_header(stream, &stream->rows[0]);
     while (!stream->ended) {
         int count = 0;
-        while (count < BATCH && read_row(stream, &stream->rows[count])) count++;
+        while (count < BATCH && read_row(stream, &stream->rows[count])) warn(stream, &stream->rows[count++]);
         compute_rows(stream, count);
         write_rows(stream, count);
     }

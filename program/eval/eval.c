@@ -2,6 +2,7 @@
 #include "program/eval/eval.h"
 
 #include "program/catalogue.h"
+#include "program/matched.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/settings.h"
@@ -139,6 +140,7 @@ static int print_result(const eval_request *request, const eval_source *source, 
 
 static int eval_one(const eval_request *request, const eval_source *source, const eval_point *point) {
     eval_result result;
+    if (source->kind) cli_warn_matched_at(source->kind, point->at);
     eval_compute(source, &source->settings, point, &result);
     if (result.status != LQ_OK && result.status != LQ_NOT_CONVERGED)
         return cli_fail_status(result.status, &result.error);

@@ -3,6 +3,7 @@
 
 #include "program/catalogue.h"
 #include "program/light.h"
+#include "program/matched.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/output.h"
@@ -269,6 +270,7 @@ static int run(int argc, char **argv) {
     int code = CLI_FAILED;
     if (format_suits(&request, kind, axes)) {
         request.command = cli_command(&given, &request, request.table);
+        cli_warn_matched(kind, axes);
         if (!request.command) code = cli_fail("out of memory");
         else if (is_mitsuba(&request, kind)) code = precompute_file(&request, axes);
         else code = precompute(&request, kind, axes);
