@@ -13,13 +13,13 @@
 #include "system/status.h"
 #include "tables/exr_chunk.h"
 #include "tables/exr_layout.h"
+#include "tables/exr_stream.h"
 
 #define ACCEPTED "accepted is a table written by lacquer"
 
 typedef struct reader {
+    lq_exr_stream stream; /* first: OpenEXR's callbacks get a reader */
     const char *path;
-    int file;
-    uint64_t size;
     exr_context_t context;
     char message[LQ_MESSAGE_SIZE]; /* the first one OpenEXR gave */
     lq_table *table;
@@ -36,27 +36,6 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     reader *r = user;
 #pragma omp critical(lq_exr_message)
     if (!*r->message) snprintf(r->message, sizeof r->message, "%s", message);
-}
-
-static int64_t get_bytes(exr_const_context_t context, void *user, void *bytes, uint64_t size, uint64_t offset,
-                         exr_stream_error_func_ptr_t report) {
-    (void)context, (void)report;
-    const reader *r = user;
-    uint64_t done = 0;
-    if (offset > r->size) return -1; /* beyond off_t, too */
-    while (done < size) {
-        ssize_t got = pread(r->file, (char *)bytes + done, size - done, (off_t)(offset + done));
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return -1;
-        if (got == 0) break;
-        done += (uint64_t)got;
-    }
-    return (int64_t)done;
-}
-
-static int64_t get_size(exr_const_context_t context, void *user) {
-    (void)context;
-    return (int64_t)((const reader *)user)->size;
 }
 
 static lq_status damaged(const reader *r, exr_result_t result, lq_error *error) {
@@ -76,12 +55,13 @@ static lq_status refuse(const reader *r, lq_status status, const char *cause, lq
 
 static lq_status open_file(reader *r, lq_error *error) {
     struct stat info;
-    r->file = open(r->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer must not hang */
-    if (r->file < 0 || fstat(r->file, &info) != 0)
+    r->stream.file =
+        open(r->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer must not hang */
+    if (r->stream.file < 0 || fstat(r->stream.file, &info) != 0)
         return lq_fail(error, LQ_IO, "%s: cannot open it: %s; accepted is a file that can be read", r->path,
                        strerror(errno));
     if (!S_ISREG(info.st_mode)) return lq_fail(error, LQ_IO, "%s: is not a regular file; " ACCEPTED, r->path);
-    r->size = (uint64_t)info.st_size;
+    r->stream.size = (uint64_t)info.st_size;
     return LQ_OK;
 }
 
@@ -89,7 +69,7 @@ static lq_status open_file(reader *r, lq_error *error) {
  * and parts never see a file that cannot be a table. */
 static lq_status check_kind(const reader *r, lq_error *error) {
     unsigned char head[8];
-    if (get_bytes(NULL, (void *)(uintptr_t)r, head, sizeof head, 0, NULL) != sizeof head ||
+    if (lq_exr_stream_read(NULL, (void *)(uintptr_t)r, head, sizeof head, 0, NULL) != sizeof head ||
         memcmp(head, "\x76\x2f\x31\x01", 4) != 0)
         return refuse(r, LQ_FORMAT, "is not an OpenEXR file", error);
     if (head[4] != 2) return refuse(r, LQ_FORMAT, "is not version 2 of OpenEXR", error);
@@ -104,8 +84,8 @@ static lq_status start(reader *r, lq_error *error) {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = keep_message;
     setup.user_data = r;
-    setup.read_fn = get_bytes;
-    setup.size_fn = get_size;
+    setup.read_fn = lq_exr_stream_read;
+    setup.size_fn = lq_exr_stream_size;
     setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     exr_result_t result = exr_start_read(&r->context, r->path, &setup);
     return result == EXR_ERR_SUCCESS ? LQ_OK : damaged(r, result, error);
@@ -195,10 +175,11 @@ static lq_status check_capacity(const reader *r, size_t channels, lq_error *erro
     exr_compression_t compression;
     const exr_result_t result = exr_get_compression(r->context, 0, &compression);
     if (result != EXR_ERR_SUCCESS) return damaged(r, result, error);
-    if (lq_exr_may_hold(r->size, compression, (double)r->height, row_bytes, r->rows_per_chunk)) return LQ_OK;
+    if (lq_exr_may_hold(r->stream.size, compression, (double)r->height, row_bytes, r->rows_per_chunk))
+        return LQ_OK;
     return lq_fail(error, LQ_FORMAT,
                    "%s: truncated: %" PRIu64 " bytes cannot hold its %zu x %zu values; " ACCEPTED, r->path,
-                   r->size, r->width, r->height);
+                   r->stream.size, r->width, r->height);
 }
 
 static lq_status make_table(reader *r, const lq_axis *axes, int axis_count, lq_error *error) {
@@ -278,8 +259,8 @@ static exr_result_t read_chunk(const reader *r, exr_decode_pipeline_t *decode, b
     exr_chunk_info_t chunk;
     exr_result_t result = exr_read_scanline_chunk_info(r->context, 0, (int)row, &chunk);
     if (result == EXR_ERR_SUCCESS)
-        result =
-            lq_exr_check_chunk(&chunk, r->size, r->width * (size_t)r->table->channel_count * sizeof(float));
+        result = lq_exr_check_chunk(&chunk, r->stream.size,
+                                    r->width * (size_t)r->table->channel_count * sizeof(float));
     if (result != EXR_ERR_SUCCESS) return result;
     if (*started) result = exr_decoding_update(r->context, 0, &chunk, decode);
     else result = exr_decoding_initialize(r->context, 0, &chunk, decode);
@@ -343,10 +324,10 @@ static lq_status read_all(reader *r, lq_error *error) {
 }
 
 lq_status lq_table_read_exr(lq_table **table, const char *path, lq_error *error) {
-    reader r = {.path = path, .file = -1};
+    reader r = {.path = path, .stream = {.file = -1}};
     lq_status status = read_all(&r, error);
     if (r.context) exr_finish(&r.context);
-    if (r.file >= 0) close(r.file);
+    if (r.stream.file >= 0) close(r.stream.file);
     if (status) lq_table_free(r.table);
     *table = status ? NULL : r.table;
     return status;

@@ -3,18 +3,20 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "system/input.h"
 #include "system/status.h"
 #include "tables/exr_chunk.h"
+#include "tables/exr_stream.h"
 #include "tables/raw.h"
 
 enum { MOST_CHANNELS = 64 };
 #define MOST_PIXELS ((uint64_t)1 << 32)
 
 typedef struct image {
+    lq_exr_stream stream; /* first: OpenEXR's callbacks get an image */
     const char *path;
-    uint64_t size; /* of the file */
     uint64_t row_bytes;
     exr_context_t context;
     size_t width, height;
@@ -29,7 +31,8 @@ static void hush(exr_const_context_t context, exr_result_t code, const char *mes
 }
 
 static lq_status broken(const image *im, exr_result_t result, lq_error *error) {
-    return lq_fail(error, LQ_FORMAT, "%s: cannot be read as EXR: %s", im->path,
+    const lq_status status = result == EXR_ERR_OUT_OF_MEMORY ? LQ_NO_MEMORY : LQ_FORMAT;
+    return lq_fail(error, status, "%s: cannot be read as EXR: %s", im->path,
                    exr_get_default_error_message(result));
 }
 
@@ -65,9 +68,10 @@ static lq_status read_shape(image *im, lq_error *error) {
     if (im->width < 1 || im->height < 1 || pixels * (uint64_t)im->channels > MOST_PIXELS)
         return lq_fail(error, LQ_FORMAT, "%s: %zu x %zu pixels cannot be a table", im->path, im->width,
                        im->height);
-    if (!lq_exr_may_hold(im->size, compression, (double)im->height, (double)im->row_bytes, rows_per_chunk))
+    if (!lq_exr_may_hold(im->stream.size, compression, (double)im->height, (double)im->row_bytes,
+                         rows_per_chunk))
         return lq_fail(error, LQ_FORMAT, "%s: truncated or damaged: %zu bytes cannot hold %zu x %zu pixels",
-                       im->path, (size_t)im->size, im->width, im->height);
+                       im->path, (size_t)im->stream.size, im->width, im->height);
     im->planes = calloc(pixels * (size_t)im->channels, sizeof *im->planes);
     return im->planes ? LQ_OK
                       : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu x %zu pixels", im->width, im->height);
@@ -83,7 +87,7 @@ static int index_of(const image *im, const char *name) {
 static exr_result_t read_rows(const image *im, exr_decode_pipeline_t *decode, bool *started, int row) {
     exr_chunk_info_t chunk;
     exr_result_t result = exr_read_scanline_chunk_info(im->context, 0, row, &chunk);
-    if (result == EXR_ERR_SUCCESS) result = lq_exr_check_chunk(&chunk, im->size, im->row_bytes);
+    if (result == EXR_ERR_SUCCESS) result = lq_exr_check_chunk(&chunk, im->stream.size, im->row_bytes);
     if (result != EXR_ERR_SUCCESS) return result;
     if (*started) result = exr_decoding_update(im->context, 0, &chunk, decode);
     else result = exr_decoding_initialize(im->context, 0, &chunk, decode);
@@ -132,32 +136,32 @@ static lq_status interleave(const image *im, const char *const *channels, int co
     return LQ_OK;
 }
 
-/* A pipe or a device is refused here: OpenEXR would wait for it. */
-static lq_status measure_file(image *im, lq_error *error) {
-    FILE *in;
-    const lq_status status = lq_input_open(&in, im->path, SIZE_MAX / 2, error);
-    if (status != LQ_OK) return status;
-    const bool ended = fseeko(in, 0, SEEK_END) == 0;
-    im->size = ended ? (uint64_t)ftello(in) : 0;
-    fclose(in);
-    return LQ_OK;
+static lq_status start(image *im, lq_error *error) {
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = hush;
+    setup.user_data = im;
+    setup.read_fn = lq_exr_stream_read;
+    setup.size_fn = lq_exr_stream_size;
+    setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    const exr_result_t result = exr_start_read(&im->context, im->path, &setup);
+    return result == EXR_ERR_SUCCESS ? LQ_OK : broken(im, result, error);
 }
 
 lq_status lq_raw_read_exr(lq_raw *raw, const char *path, const char *const *channels, int channel_count,
                           lq_error *error) {
     image im = {.path = path};
-    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn = hush;
-    setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    lq_status status = measure_file(&im, error);
+    FILE *in; /* a pipe or a device is refused here: OpenEXR would wait for it */
+    struct stat there;
+    lq_status status = lq_input_open(&in, path, SIZE_MAX / 2, error);
     if (status != LQ_OK) return status;
-    const exr_result_t result = exr_start_read(&im.context, path, &setup);
-    if (result == EXR_ERR_FILE_ACCESS) return lq_fail(error, LQ_IO, "cannot read %s: %m", path);
-    if (result != EXR_ERR_SUCCESS) return broken(&im, result, error);
-    status = read_shape(&im, error);
+    im.stream.file = fileno(in);
+    if (fstat(im.stream.file, &there) == 0) im.stream.size = (uint64_t)there.st_size;
+    status = start(&im, error);
+    if (status == LQ_OK) status = read_shape(&im, error);
     if (status == LQ_OK) status = read_planes(&im, error);
     if (status == LQ_OK) status = interleave(&im, channels, channels ? channel_count : 1, raw, error);
     free(im.planes);
     exr_finish(&im.context);
+    fclose(in);
     return status;
 }
