@@ -65,7 +65,7 @@ static lq_status evaluate_all(const job *j, size_t count, const lq_progress *pro
             failed = lq_fail(error, status, "%s", why.text);
         }
         if (failed == LQ_OK && progress && !progress->report(progress->user, (double)end / (double)count))
-            failed = LQ_CANCELLED;
+            failed = lq_fail(error, LQ_CANCELLED, "cancelled");
     }
     return failed;
 }

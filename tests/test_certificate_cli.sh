@@ -115,7 +115,7 @@ refused 'tables/cut.exr' validate tables --points 500
 echo '{"maximum": 1}' >key.json
 refused "key.json: unknown key 'maximum'; accepted: max, p99" validate loss.exr --budget key.json
 echo '{"max": }' >syntax.json
-refused 'syntax.json: line 1' validate loss.exr --budget syntax.json
+refused 'syntax.json:1: not JSON' validate loss.exr --budget syntax.json
 refused "budget 'max=x'" validate loss.exr --budget max=x
 refused "domain 'mu'" validate loss.exr --on mu
 refused 'no part of axis mu lies in 2 to 3' validate loss.exr --on mu=2:3

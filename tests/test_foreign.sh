@@ -100,7 +100,7 @@ refused "unknown key 'maskin'; accepted: table" validate albedo.npy --axes key.j
 sed 's/"albedo"/"albino"/' albedo.json >kind.json
 refused "unknown table 'albino'" validate albedo.npy --axes kind.json
 sed 's/}]}/}]/' albedo.json >open.json
-refused 'open.json: line ' validate albedo.npy --axes open.json
+refused 'open.json:3: not JSON' validate albedo.npy --axes open.json
 sed 's/"0:1:20"/"0:1:20", "sampling": "middles"/' albedo.json >sampling.json
 refused "sampling 'middles'; accepted: ends, centres, starts" validate albedo.npy --axes sampling.json
 cp albedo.json no.npy

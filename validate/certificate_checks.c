@@ -44,11 +44,13 @@ void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t 
                                  point[a]);
 }
 
+const lq_check lq_check_lost = {
+    .name = "judgements lost", .outcome = LQ_FAILED, .detail = "there was no memory to keep one"};
+
 const lq_check *lq_certified_failure(const lq_certified *certified) {
-    static const lq_check lost = {.name = "judgements lost", .outcome = LQ_FAILED};
     for (int i = 0; i < certified->check_count; i++)
         if (certified->checks[i].outcome == LQ_FAILED) return &certified->checks[i];
-    return certified->check_lost ? &lost : NULL;
+    return certified->check_lost ? &lq_check_lost : NULL;
 }
 
 void lq_check_budget(lq_certified *certified) {

@@ -40,6 +40,9 @@ void lq_check_add(lq_certified *certified, const char *name, double value, doubl
 /* "mu=0.1 alpha=0.5" of a point, into `text`. */
 void lq_point_text(const lq_kind *kind, const double *point, char *text, size_t size);
 
+/* Stands for the judgements that could not be kept. */
+extern const lq_check lq_check_lost;
+
 /* The first failed check, or NULL. A judgement that could not be kept has failed. */
 const lq_check *lq_certified_failure(const lq_certified *certified);
 

@@ -37,15 +37,16 @@ static lq_status put_case(lq_output *out, const lq_certified *certified, const l
 }
 
 static lq_status put_suite(lq_output *out, const lq_certified *certified, lq_error *error) {
-    int failures = 0;
+    int failures = certified->check_lost; /* a case more, which says so */
     for (int i = 0; i < certified->check_count; i++) failures += certified->checks[i].outcome == LQ_FAILED;
     lq_status status = lq_output_print(out, error, "  <testsuite name=\"");
     if (status == LQ_OK) status = put_text(out, certified->subject.name, error);
     if (status == LQ_OK)
         status = lq_output_print(out, error, "\" tests=\"%d\" failures=\"%d\" errors=\"0\">\n",
-                                 certified->check_count, failures);
+                                 certified->check_count + certified->check_lost, failures);
     for (int i = 0; status == LQ_OK && i < certified->check_count; i++)
         status = put_case(out, certified, &certified->checks[i], error);
+    if (status == LQ_OK && certified->check_lost) status = put_case(out, certified, &lq_check_lost, error);
     return status == LQ_OK ? lq_output_print(out, error, "  </testsuite>\n") : status;
 }
 

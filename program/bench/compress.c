@@ -1,6 +1,8 @@
 /* compress.c - tables compressed in several ways: time, bytes, error. */
 #include "program/bench/bench.h"
 
+#include "system/status.h"
+
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -97,7 +99,8 @@ static lq_status compress_subject(const subject *s, int threads, const lq_progre
         status = compress_one(s, table, schemes[k / COUNTS], bases[k % COUNTS], &list[*count], error);
         if (status == LQ_OK) ++*count;
         const double fraction = (done + (double)(k + 1) / (SCHEMES * COUNTS)) / SUBJECTS;
-        if (status == LQ_OK && !progress->report(progress->user, fraction)) status = LQ_CANCELLED;
+        if (status == LQ_OK && !progress->report(progress->user, fraction))
+            status = lq_fail(error, LQ_CANCELLED, "cancelled");
     }
     lq_table_free(table);
     return status;

@@ -2,6 +2,7 @@
 #include "program/bench/bench.h"
 
 #include "program/progress.h"
+#include "system/status.h"
 #include "validate/walk_kind.h"
 
 #include <math.h>
@@ -65,7 +66,7 @@ static lq_status refer_point(const bench_job *job, const lq_axis *axes, referenc
     double tolerance = job->reference_tolerance;
     lq_status status = LQ_NOT_CONVERGED;
     for (; status == LQ_NOT_CONVERGED && tolerance < 1e-2; tolerance *= 10.0) {
-        if (cli_interrupted()) return LQ_CANCELLED;
+        if (cli_interrupted()) return lq_fail(error, LQ_CANCELLED, "cancelled");
         double estimate;
         settings.tolerance = tolerance;
         status = lq_eval(job->kind, &settings, to->at[i].at, values, &estimate, error);
@@ -147,7 +148,7 @@ static lq_status run_solver(bench_job *job, const lq_axis *axes, const reference
 
 static lq_status walk_point(const bench_job *job, const reference *to, size_t i, const bench_row *row,
                             double *values, lq_error *error) {
-    if (cli_interrupted()) return LQ_CANCELLED;
+    if (cli_interrupted()) return lq_fail(error, LQ_CANCELLED, "cancelled");
     const lq_walk_run walk = {.samples = (size_t)row->setting, .seed = job->seed, .purpose = i, .threads = 1};
     lq_walk_mean means[LQ_MAX_CHANNELS];
     const lq_status status =
