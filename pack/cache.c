@@ -6,6 +6,7 @@
 #include "pca/factors_json.h"
 #include "system/status.h"
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -15,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -152,13 +154,23 @@ lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes
     if (status != LQ_OK) return NULL;
     if (is_entry(lq_table_fact(table, key_fact), key, lq_table_fact(table, sum_fact),
                  table_sum(table, key)) &&
-        (!axes || has_axes(table, axes, axis_count)))
+        has_axes(table, axes, axis_count))
         return table;
     lq_table_free(table);
     return NULL;
 }
 
-lq_factored *lq_cache_find_factored(const char *folder, const char *key) {
+static bool spans(const lq_factored *factored, const lq_axis *axes, int axis_count) {
+    if (factored->axis_count != axis_count) return false;
+    for (int a = 0; a < axis_count; a++)
+        if (strcmp(factored->axes[a].name, axes[a].name) != 0 || factored->axes[a].min != axes[a].min ||
+            factored->axes[a].max != axes[a].max)
+            return false;
+    return true;
+}
+
+lq_factored *lq_cache_find_factored(const char *folder, const char *key, const lq_axis *axes,
+                                    int axis_count) {
     char name[64];
     lq_factored *factored = NULL;
     const int file = open_entry(name, sizeof name, folder, key);
@@ -167,56 +179,121 @@ lq_factored *lq_cache_find_factored(const char *folder, const char *key) {
     close(file);
     if (status != LQ_OK) return NULL;
     const char *of = lq_factored_fact(factored, key_fact), *stated = lq_factored_fact(factored, sum_fact);
-    if (is_entry(of, key, stated, factored_sum(factored, key))) return factored;
+    if (is_entry(of, key, stated, factored_sum(factored, key)) && spans(factored, axes, axis_count))
+        return factored;
     lq_factored_free(factored);
     return NULL;
 }
 
-/* A folder of the user's own inside the cache, whose files are then renamed to their place: that replaces a
- * link where writing would follow it. */
-static lq_status open_place(char *inner, size_t size, const char *folder, lq_error *error) {
-    lq_status status = make_folders(folder)
-                           ? lq_cache_check(folder, error)
-                           : lq_fail(error, LQ_IO, "the cache %s cannot be made: %m", folder);
-    if (status != LQ_OK) return status;
-    snprintf(inner, size, "%s/new-XXXXXX", folder);
-    return mkdtemp(inner) ? LQ_OK : lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", folder);
+/* -------------------------------------------------------------------------------------- a place to write */
+
+/* A folder of the user's own inside the cache, whose file is then renamed to its place: that replaces a link
+ * where writing would follow it. The lock dies with its maker, and tells a folder that was left over from one
+ * at work. */
+typedef struct place {
+    char path[PATH_MAX], file[PATH_MAX + 8];
+    int lock;
+} place;
+
+static const char PLACE_NAME[] = "new-XXXXXX", FILE_NAME[] = "exr";
+
+static bool is_own_folder(int folder) {
+    struct stat info;
+    return fstat(folder, &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == geteuid();
 }
 
-static lq_status close_place(const char *inner, const char *written, lq_status status, const char *folder,
-                             const char *key, lq_error *error) {
+/* What system/output.c leaves beside the file it makes, too. */
+static void clear_files(int folder) {
+    DIR *list = fdopendir(dup(folder));
+    for (struct dirent *entry; list && (entry = readdir(list));)
+        if (strcmp(entry->d_name, FILE_NAME) == 0 || strncmp(entry->d_name, ".lacquer-", 9) == 0)
+            unlinkat(folder, entry->d_name, 0);
+    if (list) closedir(list);
+}
+
+static void clear_leftover(const char *cache, const char *name) {
     char path[PATH_MAX];
-    name_file(path, sizeof path, folder, key);
-    if (status == LQ_OK && rename(written, path) != 0)
-        status = lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", folder);
-    unlink(written);
-    rmdir(inner);
+    if (snprintf(path, sizeof path, "%s/%s", cache, name) >= (int)sizeof path) return;
+    const int folder = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0) return;
+    if (is_own_folder(folder) && flock(folder, LOCK_EX | LOCK_NB) == 0) {
+        clear_files(folder);
+        rmdir(path); /* stays where it holds anything else */
+    }
+    close(folder);
+}
+
+/* What runs that were killed left in the cache. */
+static void clear_leftovers(const char *cache) {
+    DIR *list = opendir(cache);
+    for (struct dirent *entry; list && (entry = readdir(list));)
+        if (strlen(entry->d_name) == sizeof PLACE_NAME - 1 && strncmp(entry->d_name, PLACE_NAME, 4) == 0)
+            clear_leftover(cache, entry->d_name);
+    if (list) closedir(list);
+}
+
+/* Another run may take it for a leftover until it is locked. */
+static bool make_place(place *p, const char *cache) {
+    struct stat info;
+    for (int attempt = 0; attempt < 10; attempt++) {
+        if (snprintf(p->path, sizeof p->path, "%s/%s", cache, PLACE_NAME) >= (int)sizeof p->path)
+            return false;
+        if (!mkdtemp(p->path)) return false;
+        p->lock = open(p->path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (p->lock >= 0 && flock(p->lock, LOCK_EX) == 0 && stat(p->path, &info) == 0) return true;
+        if (p->lock >= 0) close(p->lock);
+        rmdir(p->path);
+    }
+    return false;
+}
+
+static lq_status open_place(place *p, const char *cache, lq_error *error) {
+    lq_status status = make_folders(cache) ? lq_cache_check(cache, error)
+                                           : lq_fail(error, LQ_IO, "the cache %s cannot be made: %m", cache);
+    if (status != LQ_OK) return status;
+    clear_leftovers(cache);
+    if (!make_place(p, cache)) return lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", cache);
+    snprintf(p->file, sizeof p->file, "%s/%s", p->path, FILE_NAME);
+    return LQ_OK;
+}
+
+static lq_status close_place(const place *p, lq_status status, const char *cache, const char *key,
+                             lq_error *error) {
+    char path[PATH_MAX];
+    name_file(path, sizeof path, cache, key);
+    if (status == LQ_OK && rename(p->file, path) != 0)
+        status = lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", cache);
+    unlink(p->file);
+    rmdir(p->path);
+    close(p->lock);
     return status;
 }
 
+/* --------------------------------------------------------------------------------------- storing */
+
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error) {
-    char inner[PATH_MAX], written[PATH_MAX + 8], sum[32];
-    lq_status status = open_place(inner, sizeof inner, folder, error);
+    place inner;
+    char sum[32];
+    lq_status status = open_place(&inner, folder, error);
     if (status != LQ_OK) return status;
-    snprintf(written, sizeof written, "%s/exr", inner);
     print_sum(sum, sizeof sum, table_sum(table, key));
     status = lq_table_set_fact(table, key_fact, key, error);
     if (status == LQ_OK) status = lq_table_set_fact(table, sum_fact, sum, error);
-    if (status == LQ_OK) status = lq_table_write_exr(table, written, error);
-    return close_place(inner, written, status, folder, key, error);
+    if (status == LQ_OK) status = lq_table_write_exr(table, inner.file, error);
+    return close_place(&inner, status, folder, key, error);
 }
 
 lq_status lq_cache_store_factored(const char *folder, const char *key, lq_factored *factored,
                                   lq_error *error) {
-    char inner[PATH_MAX], written[PATH_MAX + 8], sum[32];
-    lq_status status = open_place(inner, sizeof inner, folder, error);
+    place inner;
+    char sum[32];
+    lq_status status = open_place(&inner, folder, error);
     if (status != LQ_OK) return status;
-    snprintf(written, sizeof written, "%s/exr", inner);
     print_sum(sum, sizeof sum, factored_sum(factored, key));
     status = lq_factored_set_fact(factored, key_fact, key, error);
     if (status == LQ_OK) status = lq_factored_set_fact(factored, sum_fact, sum, error);
-    if (status == LQ_OK) status = lq_factored_write(factored, written, error);
-    return close_place(inner, written, status, folder, key, error);
+    if (status == LQ_OK) status = lq_factored_write(factored, inner.file, error);
+    return close_place(&inner, status, folder, key, error);
 }
 
 const char *lq_cache_build(char *text, size_t size) {

@@ -12,15 +12,16 @@ bool lq_cache_default(char *folder, size_t size);
 lq_status lq_cache_check(const char *folder, lq_error *error);
 
 /* The table stored for `key`, or NULL. A file that is a link, not a file of the user's own, damaged, of
- * another key or, where `axes` are given, over others than these is no table. */
+ * another key or over other axes than these is no table. */
 lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes, int axis_count);
 
 /* Store it; it gets the facts "cache-key" and "cache-sum". Two runs may do so at once: each file appears
- * whole, and both write the same. The folder is made where it is missing. LQ_IO: it cannot be written. */
+ * whole, and both write the same. The folder is made where it is missing, and cleared of what a killed run
+ * left. LQ_IO: it cannot be written. */
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error);
 
-/* The same for factors. */
-lq_factored *lq_cache_find_factored(const char *folder, const char *key);
+/* The same for factors, of a table between the ends of these axes. */
+lq_factored *lq_cache_find_factored(const char *folder, const char *key, const lq_axis *axes, int axis_count);
 lq_status lq_cache_store_factored(const char *folder, const char *key, lq_factored *factored,
                                   lq_error *error);
 

@@ -107,12 +107,15 @@ lq_status lq_mapping_table(const lq_kind *kind, const lq_settings *settings, con
     return status;
 }
 
+lq_status lq_mapping_exact_axis(const lq_axis *axis, size_t points, lq_axis *finer, lq_error *error) {
+    return lq_axis_make(finer, axis->name, axis->min, axis->max, points, LQ_MAP_POWER, axis->exponent, error);
+}
+
 lq_status lq_mapping_exact(const lq_kind *kind, const lq_settings *settings, const lq_axis *axis,
                            size_t points, lq_table **table, lq_error *error) {
     lq_axis finer;
     *table = NULL;
-    lq_status status =
-        lq_axis_make(&finer, axis->name, axis->min, axis->max, points, LQ_MAP_POWER, axis->exponent, error);
+    lq_status status = lq_mapping_exact_axis(axis, points, &finer, error);
     if (status == LQ_OK) status = lq_mapping_table(kind, settings, &finer, table, error);
     lq_axis_free(&finer);
     return status;

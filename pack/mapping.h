@@ -21,5 +21,7 @@ lq_status lq_mapping_table(const lq_kind *kind, const lq_settings *settings, con
  */
 lq_status lq_mapping_exact(const lq_kind *kind, const lq_settings *settings, const lq_axis *axis,
                            size_t points, lq_table **table, lq_error *error);
+/* Its axis. Free it. */
+lq_status lq_mapping_exact_axis(const lq_axis *axis, size_t points, lq_axis *finer, lq_error *error);
 
 #endif

@@ -70,12 +70,15 @@ static lq_status evaluate_all(const job *j, size_t count, const lq_progress *pro
     return failed;
 }
 
+lq_status lq_measure_axis(size_t count, lq_axis *axis, lq_error *error) {
+    return lq_axis_make(axis, POINT_AXIS, 0.0, (double)(count - 1), count, LQ_MAP_LINEAR, 0.0, error);
+}
+
 lq_status lq_measure_exact(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
                            size_t count, const lq_progress *progress, lq_table **exact, lq_error *error) {
     lq_axis axis;
     lq_settings opened = *settings;
-    lq_status status =
-        lq_axis_make(&axis, POINT_AXIS, 0.0, (double)(count - 1), count, LQ_MAP_LINEAR, 0.0, error);
+    lq_status status = lq_measure_axis(count, &axis, error);
     if (status != LQ_OK) return status;
     status = lq_table_create(exact, &axis, 1, kind->channels, kind->channel_count, error);
     lq_axis_free(&axis);
@@ -93,18 +96,24 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+lq_status lq_measure_grid_axes(const lq_axis *axes, int axis_count, size_t points, size_t seed,
+                               lq_axis *nodes, lq_error *error) {
+    double min[LQ_MAX_AXES], max[LQ_MAX_AXES];
+    /* Its cube is what three axes of so many nodes have. */
+    const size_t each = (size_t)fmin(fmax(ceil(cbrt((double)points)), 4.0), 64.0);
+    for (int a = 0; a < axis_count; a++) {
+        nodes[a] = (lq_axis){.size = 0};
+        min[a] = lowest_of(&axes[a]);
+        max[a] = axes[a].max;
+    }
+    return lq_random_axes(axes, axis_count, min, max, each, seed, nodes, error);
+}
+
 lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings, const lq_axis *axes,
                                 size_t points, size_t seed, const lq_progress *progress, lq_table **exact,
                                 lq_error *error) {
     lq_axis nodes[LQ_MAX_AXES] = {0};
-    double min[LQ_MAX_AXES], max[LQ_MAX_AXES];
-    /* Its cube is what three axes of so many nodes have. */
-    const size_t each = (size_t)fmin(fmax(ceil(cbrt((double)points)), 4.0), 64.0);
-    for (int a = 0; a < kind->axis_count; a++) {
-        min[a] = lowest_of(&axes[a]);
-        max[a] = axes[a].max;
-    }
-    lq_status status = lq_random_axes(axes, kind->axis_count, min, max, each, seed, nodes, error);
+    lq_status status = lq_measure_grid_axes(axes, kind->axis_count, points, seed, nodes, error);
     if (status == LQ_OK) status = lq_precompute(kind, settings, nodes, progress, exact, error);
     for (int a = 0; a < kind->axis_count; a++) lq_axis_free(&nodes[a]);
     return status;

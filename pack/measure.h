@@ -34,6 +34,11 @@ lq_status lq_measure_exact_grid(const lq_kind *kind, const lq_settings *settings
                                 size_t points, size_t seed, const lq_progress *progress, lq_table **exact,
                                 lq_error *error);
 
+/* The axes of either table, from none of its values: how a stored one is recognised. Free each. */
+lq_status lq_measure_axis(size_t count, lq_axis *axis, lq_error *error);
+lq_status lq_measure_grid_axes(const lq_axis *axes, int axis_count, size_t points, size_t seed,
+                               lq_axis *nodes, lq_error *error);
+
 lq_status lq_measure_factored(const lq_factored *factored, int channel, const lq_table *exact, bool relative,
                               lq_measure *measured, lq_error *error);
 

@@ -181,6 +181,40 @@ for entry in "$cache"/*.exr; do
         "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null && diff -r good cached || fail "a changed entry"
     done
 done
+# What a run that was killed left in the cache is cleared by the next that stores something: not what another run is
+# working in, and nothing that is not this program's.
+leave() { mkdir "$cache/new-$1" && echo half >"$cache/new-$1/$2"; }
+leave aaaaaa exr && leave bbbbbb .lacquer-17-0 && leave cccccc exr && leave dddddd thesis.tex
+mkdir "$cache/new-folder" && echo x >"$cache/new-folder-of-mine"
+rm "$(find "$cache" -name '*.exr' | head -1)"
+flock "$cache/new-cccccc" "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null
+[ ! -e "$cache/new-aaaaaa" ] && [ ! -e "$cache/new-bbbbbb" ] || fail "left over: $(ls "$cache")"
+[ -e "$cache/new-cccccc/exr" ] && [ -e "$cache/new-dddddd/thesis.tex" ] && [ -e "$cache/new-folder-of-mine" ] ||
+    fail "cleared what is not left over: $(ls "$cache")"
+rm -r "$cache"/new-*
+for wait in 01 02 03 04 05 06 07 08 09 10 11 12; do
+    rm -f "$cache"/*.exr
+    "$lacquer" pack small.json -o cached --cache "$cache" >/dev/null 2>&1 &
+    killed=$!
+    sleep "0.0$wait" && kill -9 $killed 2>/dev/null || true
+    wait $killed 2>/dev/null || true
+done
+rm -f "$cache"/*.exr
+"$lacquer" pack small.json -o cached --cache "$cache" >/dev/null && diff -r good cached || fail "after kills"
+[ -z "$(find "$cache" -name 'new-*')" ] || fail "kill -9 leaves $(find "$cache" -name 'new-*')"
+# Every kind of entry is found again: tables, values at points and on a grid, factors, mappings.
+cat >kinds.json <<'END'
+{"name": "kinds", "formats": ["npy"], "points": 100, "tables": [
+ {"table": "albedo", "axes": {"mu": "0:1:8", "alpha": "0:1:8"}, "tolerance": 1e-3},
+ {"table": "fgd-dielectric", "axes": {"mu": "0:1:4", "alpha": "0:1:3", "eta": "1.2:2:3"}, "tolerance": 1e-2},
+ {"table": "albedo", "name": "factors", "axes": {"mu": "0:1:8", "alpha": "0:1:8"}, "tolerance": 1e-3,
+  "pca": {"separate": "alpha:2"}},
+ {"mapping": "f", "axes": {"alpha": "0.01:0.9:16"}}]}
+END
+"$lacquer" pack kinds.json -o kinds --cache "$cache" >/dev/null
+(cd "$cache" && stat -c '%n %y %i' -- *.exr) >before.txt
+"$lacquer" pack kinds.json -o kinds --cache "$cache" >/dev/null
+(cd "$cache" && stat -c '%n %y %i' -- *.exr) | diff before.txt - || fail "entries were not found again"
 if [ "$(id -u)" = 0 ]; then
     mkdir others && chown 12345 others
     code=0

@@ -82,6 +82,26 @@ static lq_status go_without(pack_request *r, lq_status status, const lq_error *e
     return LQ_OK;
 }
 
+/* The axes that it has to have. */
+static lq_status axes_of(const lq_recipe_table *t, const want *w, lq_axis *axes, int *count) {
+    const bool mapping = lq_is_mapping(t->kind), grid = on_grid(t) && !mapping;
+    *count = grid ? t->kind->axis_count : 1;
+    return grid      ? lq_measure_grid_axes(t->axes, *count, w->points, w->seed, axes, NULL)
+           : mapping ? lq_mapping_exact_axis(t->axes, w->points, axes, NULL)
+                     : lq_measure_axis(w->points, axes, NULL);
+}
+
+/* In the cache; NULL: it is not there. */
+static lq_table *find(const pack_request *r, const char *key, const lq_recipe_table *t, const want *w) {
+    lq_axis axes[LQ_MAX_AXES] = {0};
+    int count;
+    if (!w->points) return lq_cache_find(r->cache, key, t->axes, t->kind->axis_count);
+    if (axes_of(t, w, axes, &count) != LQ_OK) return NULL;
+    lq_table *found = lq_cache_find(r->cache, key, axes, count);
+    for (int a = 0; a < count; a++) lq_axis_free(&axes[a]);
+    return found;
+}
+
 /* From the cache, or computed and put there. */
 static lq_status obtain(pack_request *r, const lq_recipe_table *t, const want *w, lq_table **table,
                         lq_error *error) {
@@ -94,7 +114,7 @@ static lq_status obtain(pack_request *r, const lq_recipe_table *t, const want *w
     lq_settings settings = t->settings;
     settings.threads = (int)r->threads;
     lq_status status = LQ_OK;
-    *table = *r->cache ? lq_cache_find(r->cache, key, w->points ? NULL : t->axes, t->kind->axis_count) : NULL;
+    *table = *r->cache ? find(r, key, t, w) : NULL;
     if (!*table) {
         status = compute(t, w, &settings, table, error);
         if (status == LQ_OK && *r->cache) status = go_without(r, store(r, key, *table, NULL, error), error);
@@ -152,7 +172,7 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
     char *key = write_key(r, t, what);
     if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
     for (int l = 0; l < LQ_LAYOUTS; l++) binary = binary || t->layouts[l];
-    packed->factored = *r->cache ? lq_cache_find_factored(r->cache, key) : NULL;
+    packed->factored = *r->cache ? lq_cache_find_factored(r->cache, key, t->axes, t->kind->axis_count) : NULL;
     if (!packed->factored || binary) status = obtain(r, t, &whole, &packed->table, error);
     if (status == LQ_OK && !packed->factored) {
         status = factor(r, packed, error);
