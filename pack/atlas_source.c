@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "system/number.h"
+#include "system/draft.h"
 #include "system/output.h"
 #include "system/status.h"
 
@@ -151,14 +151,12 @@ static const char *outside(lq_language language, int channels) {
 }
 
 static void say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *value = open_memstream(&text, &size);
-    if (!value) return;
-    lq_say(value, language, "%s", outside(language, channels));
-    fclose(value);
-    lq_say_check(out, language, checks, count, text);
-    free(text);
+    lq_draft text = {.text = NULL};
+    FILE *value = lq_draft_open(&text);
+    if (value) lq_say(value, language, "%s", outside(language, channels));
+    if (value && lq_draft_close(&text, value)) lq_say_check(out, language, checks, count, text.text);
+    else lq_draft_fail(out);
+    free(text.text);
 }
 
 static void say_comment(FILE *out, const char *name, const lq_kind *kind) {
@@ -373,17 +371,14 @@ static void say_all(FILE *out, lq_language language, const lq_atlas_contents *co
 
 lq_status lq_atlas_source_text(lq_language language, const lq_atlas_contents *contents, char **text,
                                lq_error *error) {
-    size_t size = 0;
+    lq_draft draft = {.text = NULL};
+    FILE *out = lq_draft_open(&draft);
     *text = NULL;
-    FILE *out = open_memstream(text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
-    const locale_t before = lq_locale_c();
     say_all(out, language, contents);
-    lq_locale_back(before);
-    if (fclose(out) == 0) return LQ_OK;
-    free(*text);
-    *text = NULL;
-    return lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
+    const bool whole = lq_draft_close(&draft, out);
+    *text = draft.text;
+    return whole ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for decode source");
 }
 
 lq_status lq_atlas_source_write(lq_language language, const lq_atlas_contents *contents, const char *path,

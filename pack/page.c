@@ -9,6 +9,7 @@
 
 #include "picture/page_parts.h"
 #include "picture/text.h"
+#include "system/draft.h"
 #include "system/output.h"
 #include "system/status.h"
 
@@ -213,16 +214,15 @@ static lq_status put_page(FILE *out, const lq_packing *packing, const reference 
 
 lq_status lq_pack_page_write(const lq_packing *packing, const char *path, lq_error *error) {
     reference r;
-    char *text = NULL;
-    size_t size = 0;
+    lq_draft draft = {.text = NULL};
     lq_status status = make_reference(&r, packing, error);
-    FILE *out = status == LQ_OK ? open_memstream(&text, &size) : NULL;
+    FILE *out = status == LQ_OK ? lq_draft_open(&draft) : NULL;
     if (status == LQ_OK && !out) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a page");
     if (status == LQ_OK) status = put_page(out, packing, &r, error);
-    if (out && fclose(out) != 0 && status == LQ_OK)
+    if (out && !lq_draft_close(&draft, out) && status == LQ_OK)
         status = lq_fail(error, LQ_NO_MEMORY, "no memory for a page");
-    if (status == LQ_OK) status = lq_output_save(path, text, size, error);
-    free(text);
+    if (status == LQ_OK) status = lq_output_save(path, draft.text, draft.size, error);
+    free(draft.text);
     lq_atlas_free(&r.atlas);
     return status;
 }

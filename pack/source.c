@@ -6,7 +6,7 @@
 
 #include "pack/factored.h"
 #include "pack/source_text.h"
-#include "system/number.h"
+#include "system/draft.h"
 #include "system/output.h"
 #include "system/status.h"
 
@@ -171,11 +171,9 @@ static void print_c(FILE *out, const lq_texture *texture) {
 
 lq_status lq_source_write(lq_language language, const lq_source_table *tables, size_t count, const char *path,
                           lq_error *error) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    lq_draft draft = {.text = NULL};
+    FILE *out = lq_draft_open(&draft);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
-    const locale_t before = lq_locale_c();
     fputs("/* Decode functions, made by lacquer " LQ_VERSION ". */\n", out);
     lq_print_helpers(out, language);
     for (size_t i = 0; i < count; i++) {
@@ -187,9 +185,8 @@ lq_status lq_source_write(lq_language language, const lq_source_table *tables, s
         else print_shader(out, texture, language);
     }
     fputs("\n#endif\n", out);
-    lq_locale_back(before);
-    lq_status status = fclose(out) == 0 ? lq_output_save(path, text, size, error)
-                                        : lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
-    free(text);
+    lq_status status = lq_draft_close(&draft, out) ? lq_output_save(path, draft.text, draft.size, error)
+                                                   : lq_fail(error, LQ_NO_MEMORY, "%s: out of memory", path);
+    free(draft.text);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "program/options.h"
 
 #include "program/message.h"
+#include "system/draft.h"
 #include "system/status.h"
 
 #include <errno.h>
@@ -200,18 +201,14 @@ static void write_option(FILE *out, const cli_option *option, const void *reques
 
 char *cli_command(const cli_given *given, const void *request, const char *words) {
     const cli_verb *verb = given->verb;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    lq_draft draft = {.text = NULL};
+    FILE *out = lq_draft_open(&draft);
     if (!out) return NULL;
     fprintf(out, "lacquer %s %s", verb->name, words);
     for (size_t i = 0; i < verb->option_count; i++)
         if (given->text[i] && !verb->options[i].silent)
             write_option(out, &verb->options[i], request, given->text[i]);
-    const bool whole = !ferror(out);
-    if (fclose(out) == 0 && whole) return text;
-    free(text);
-    return NULL;
+    return lq_draft_close(&draft, out) ? draft.text : NULL;
 }
 
 /* ======================================================================================

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "stack/description.h"
+#include "system/draft.h"
 #include "system/number.h"
 #include "system/status.h"
 
@@ -92,9 +93,9 @@ static void put_layer(FILE *out, const lq_layer *layer) {
 }
 
 lq_status lq_stack_text(const lq_stack *stack, char **text, lq_error *error) {
-    size_t size;
+    lq_draft draft = {.text = NULL};
+    FILE *out = lq_draft_open(&draft);
     *text = NULL;
-    FILE *out = open_memstream(text, &size);
     if (!out) return lq_fail(error, LQ_NO_MEMORY, "no memory for the text of a stack");
     fputc('{', out);
     if (stack->name[0]) {
@@ -108,9 +109,7 @@ lq_status lq_stack_text(const lq_stack *stack, char **text, lq_error *error) {
         put_layer(out, &stack->layers[i]);
     }
     fputs("]}", out);
-    const bool failed = ferror(out) != 0;
-    if (fclose(out) == 0 && !failed) return LQ_OK;
-    free(*text);
-    *text = NULL;
-    return lq_fail(error, LQ_NO_MEMORY, "no memory for the text of a stack");
+    const bool whole = lq_draft_close(&draft, out);
+    *text = draft.text;
+    return whole ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for the text of a stack");
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/draft.h"
 #include "system/input.h"
 #include "system/status.h"
 #include "system/text.h"
@@ -47,41 +48,17 @@ void lq_json_append(json_t **array, json_t *value) {
 
 /* ------------------------------------------------------------------ text */
 
-typedef struct growing {
-    char *text;
-    size_t used, room;
-    bool failed;
-} growing;
-
-static bool make_room(growing *to, size_t size) {
-    if (to->room - to->used > size) return true;
-    const size_t room = 2 * (to->used + size) + 256;
-    char *longer = realloc(to->text, room);
-    if (!longer) return false;
-    to->text = longer;
-    to->room = room;
-    return true;
-}
-
-/* jansson 2.14 does not look at what this returns where it writes a key: a failure has to be remembered. */
-static int grow(const char *bytes, size_t size, void *data) {
-    growing *to = data;
-    if (to->failed || !make_room(to, size)) {
-        to->failed = true;
-        return -1;
-    }
-    memcpy(to->text + to->used, bytes, size);
-    to->used += size;
-    to->text[to->used] = '\0';
-    return 0;
+/* jansson 2.14 does not look at what this returns where it writes a key: the draft remembers a failure. */
+static int add(const char *bytes, size_t size, void *draft) {
+    return lq_draft_add(draft, bytes, size) ? 0 : -1;
 }
 
 char *lq_json_dump(json_t *root, size_t flags) {
-    growing to = {.text = NULL};
-    const bool done = root && json_dump_callback(root, grow, &to, flags) == 0 && !to.failed;
+    lq_draft draft = {.text = NULL};
+    const bool done = root && json_dump_callback(root, add, &draft, flags) == 0 && !draft.failed;
     json_decref(root);
-    if (done) return to.text;
-    free(to.text);
+    if (done) return draft.text;
+    free(draft.text);
     return NULL;
 }
 

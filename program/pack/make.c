@@ -7,6 +7,7 @@
 #include "program/message.h"
 #include "program/pack/pack.h"
 #include "program/progress.h"
+#include "system/draft.h"
 #include "tables/facts.h"
 
 #include <math.h>
@@ -18,9 +19,8 @@
 
 /* All that determines a table: the program, the kind, the settings and every node. NULL: out of memory. */
 static char *write_key(const pack_request *r, const lq_recipe_table *t, const char *what) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    lq_draft draft = {.text = NULL};
+    FILE *out = lq_draft_open(&draft);
     if (!out) return NULL;
     fprintf(out, "%s %s %s ndf=%s tolerance=%.17g scattering=%d masking=%d", r->build, what, t->kind->id,
             t->settings.ndf, t->settings.tolerance, (int)t->settings.scattering, (int)t->settings.masking);
@@ -28,9 +28,7 @@ static char *write_key(const pack_request *r, const lq_recipe_table *t, const ch
         fprintf(out, " %s=", t->axes[a].name);
         for (size_t i = 0; i < t->axes[a].size; i++) fprintf(out, "%.17g,", t->axes[a].nodes[i]);
     }
-    if (fclose(out) == 0) return text;
-    free(text);
-    return NULL;
+    return lq_draft_close(&draft, out) ? draft.text : NULL;
 }
 
 /* One thing to obtain: a table (points 0), or exact values to measure or to search against. */

@@ -232,8 +232,7 @@ static lq_status diagnose(against_job *job, const lq_progress *progress, lq_erro
 
 static int report(const against_job *job) {
     if (!job->request->json) against_print_text(job);
-    else if (!against_print_json(job))
-        return cli_fail("'%s' or its facts are not valid UTF-8", job->request->file);
+    else if (!against_print_json(job)) return CLI_FAILED;
     return against_complaint(job) ? CLI_EXCEEDED : CLI_DONE;
 }
 

@@ -227,8 +227,7 @@ static lq_status load(validate_job *job, lq_error *error) {
 
 static int report(const validate_job *job) {
     if (!job->request.json) validate_print_text(job);
-    else if (!validate_print_json(job))
-        return cli_fail("'%s' or its facts are not valid UTF-8", job->request.file);
+    else if (!validate_print_json(job)) return CLI_FAILED;
     return validate_complaint(job) ? CLI_EXCEEDED : CLI_DONE;
 }
 
