@@ -14,7 +14,7 @@ typedef struct sums {
     double area_in, mu_in; /* of the incident direction, as G wants them */
     double total;          /* of all weights: sigma(v) */
     double *escaping, *remaining;
-    double *shares; /* of `escaping`: SHARES a curve; NULL: not wanted */
+    double *shares; /* of `escaping`, SHARES a curve, and of `total`, behind them; NULL: not wanted */
     int panel_fans, fans;
 } sums;
 
@@ -32,11 +32,13 @@ static void add_fan(void *user, const lq_fan *fan) {
     for (int i = 0; i < fan->count; i++) all += fan->weight[i];
     s->total += all;
     lq_curves_at(s->curves, fan->cos_d, curve);
+    const int part = s->fans / s->panel_fans % SHARES;
     for (int k = 0; k < s->curves->count; k++) {
         s->escaping[k] += curve[k] * leaves;
         s->remaining[k] += curve[k] * (all - leaves);
-        if (s->shares) s->shares[k * SHARES + s->fans / s->panel_fans % SHARES] += curve[k] * leaves;
+        if (s->shares) s->shares[k * SHARES + part] += curve[k] * leaves;
     }
+    if (s->shares) s->shares[s->curves->count * SHARES + part] += all;
     s->fans++;
 }
 
@@ -50,13 +52,14 @@ static void integrate(const lq_ndf *ndf, double alpha, lq_masking masking, doubl
         s.mu_in = mu;
     }
     for (int k = 0; k < curves->count; k++) escaping[k] = remaining[k] = 0.0;
-    for (int i = 0; shares && i < curves->count * SHARES; i++) shares[i] = 0.0;
+    const int parts = shares ? (curves->count + 1) * SHARES : 0;
+    for (int i = 0; i < parts; i++) shares[i] = 0.0;
     lq_facets_visit(ndf, alpha, mu, sine, rule, &curves->panels, add_fan, &s);
     for (int k = 0; k < curves->count; k++) {
         escaping[k] /= s.total;
         remaining[k] /= s.total;
     }
-    for (int i = 0; shares && i < curves->count * SHARES; i++) shares[i] /= s.total;
+    for (int i = 0; i < parts; i++) shares[i] /= s.total;
 }
 
 void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double mu, const lq_curves *curves,
@@ -69,14 +72,21 @@ void lq_first_bounce(const lq_ndf *ndf, double alpha, lq_masking masking, double
 static const int resolutions[][2] = {{6, 8}, {8, 12}, {12, 16}, {16, 24}, {24, 32}, {32, 48}, {48, 64}};
 enum { RESOLUTIONS = sizeof resolutions / sizeof resolutions[0] };
 
-/* The largest change of a curve between two levels, the changes of its parts added up without their signs. */
-static double change_of(const double *shares, const double *before, int curves) {
+/* The changes of the parts of one integral between two levels, added up without their signs. */
+static double change_of_parts(const double *shares, const double *before, int integral) {
+    double change = 0.0;
+    for (int p = integral * SHARES; p < (integral + 1) * SHARES; p++) change += fabs(shares[p] - before[p]);
+    return change;
+}
+
+/* The largest change of a curve. Every value is divided by the total, whose error comes from facets that send
+ * no light out too, and shows in no part of what leaves: at alpha = 0.91, mu = 0.84 the total of Beckmann was
+ * off by 1.3e-4 and 1.1e-4 on two levels in a row, its parts by ten times the difference. */
+static double change_of(const double *shares, const double *before, const double *escaping, int curves) {
+    const double total = change_of_parts(shares, before, curves);
     double most = 0.0;
-    for (int k = 0; k < curves; k++) {
-        double change = 0.0;
-        for (int p = k * SHARES; p < (k + 1) * SHARES; p++) change += fabs(shares[p] - before[p]);
-        most = fmax(most, change);
-    }
+    for (int k = 0; k < curves; k++)
+        most = fmax(most, change_of_parts(shares, before, k) + escaping[k] * total);
     return most;
 }
 
@@ -103,13 +113,15 @@ static const lq_facet_rule *rule_at(ladder *l, int level) {
 
 static double converge(const lq_ndf *ndf, double alpha, lq_masking masking, double mu,
                        const lq_curves *curves, double tolerance, ladder *rules, double *escaping) {
-    double shares[2][LQ_CURVES_MAX * SHARES], remaining[LQ_CURVES_MAX], estimate = INFINITY, older = 0.0;
+    double shares[2][(LQ_CURVES_MAX + 1) * SHARES], remaining[LQ_CURVES_MAX], estimate = INFINITY,
+                                                                              older = 0.0;
     for (int level = 0; level < RESOLUTIONS && estimate > tolerance; level++) {
         double *now = shares[level % 2], *before = shares[1 - level % 2];
         integrate(ndf, alpha, masking, mu, curves, rule_at(rules, level), escaping, remaining, now);
         if (level == 0) continue;
-        const double change = change_of(now, before, curves->count);
-        estimate = fmax(lq_first_bounce_estimate(change, older), 0.1 * tolerance);
+        const double change = change_of(now, before, escaping, curves->count);
+        /* Half of that, for parts of the total are in the change as well. */
+        estimate = fmax(0.5 * lq_first_bounce_estimate(change, older), 0.1 * tolerance);
         older = change;
     }
     return estimate;
