@@ -1,5 +1,6 @@
 /* draw_ink.c - ink, text, and the axes around a plot. */
 #include "picture/draw_parts.h"
+#include "system/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,7 +62,7 @@ void lq_draw_frame(cairo_t *cr, const lq_box *box) {
 static void describe(const lq_axis *axis, char *text, size_t size) {
     char map[48];
     snprintf(map, sizeof map, ", %s", lq_map_name(axis->map));
-    if (axis->map == LQ_MAP_POWER) snprintf(map, sizeof map, ", power %g", axis->exponent);
+    if (axis->map == LQ_MAP_POWER) lq_print(map, sizeof map, ", power %g", axis->exponent);
     if (axis->map == LQ_MAP_LINEAR) map[0] = '\0';
     snprintf(text, size, "%s (%zu nodes%s)", axis->name, axis->size, map);
 }

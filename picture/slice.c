@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "system/number.h"
 #include "system/status.h"
 
 void lq_slice_axes(const lq_table *table, int *x, int *y) {
@@ -22,7 +23,7 @@ static void describe(const lq_slice *slice, char *text, size_t size) {
     text[0] = '\0';
     for (int a = 0; a < slice->table->axis_count; a++) {
         if (a == slice->x || a == slice->y || used >= size) continue;
-        used += (size_t)snprintf(text + used, size - used, "%s%s %.4g", used ? ", " : "",
+        used += (size_t)lq_print(text + used, size - used, "%s%s %.4g", used ? ", " : "",
                                  slice->table->axes[a].name, slice->at[a]);
     }
     if (slice->note && used < size)

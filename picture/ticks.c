@@ -1,5 +1,6 @@
 /* ticks.c - steps of 1, 2 and 5 from coarse to fine. */
 #include "picture/ticks.h"
+#include "system/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -94,7 +95,7 @@ static void add(ruler *r, const multiples *m, const bool full[LQ_TICKS_MAX + 1])
             continue;
         lq_tick *tick = &r->ticks[r->count++];
         *tick = (lq_tick){.value = value, .at = at};
-        snprintf(tick->text, sizeof tick->text, "%.6g", value);
+        lq_print(tick->text, sizeof tick->text, "%.6g", value);
     }
 }
 
@@ -122,7 +123,7 @@ static size_t fill(ruler *r) {
 /* The one value of an axis of one node. */
 static size_t alone(double value, lq_tick *tick) {
     *tick = (lq_tick){.value = value, .at = 0.0};
-    snprintf(tick->text, sizeof tick->text, "%.6g", value);
+    lq_print(tick->text, sizeof tick->text, "%.6g", value);
     return 1;
 }
 

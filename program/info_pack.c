@@ -4,9 +4,9 @@
 #include "pack/contents.h"
 #include "pack/read.h"
 #include "program/message.h"
+#include "program/output.h"
 #include "program/verb.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -99,17 +99,17 @@ int info_pack(const char *folder, bool as_json) {
     char path[4096];
     lq_pack pack;
     lq_error error = {""};
-    json_error_t cause;
-    const lq_status status = lq_pack_read(&pack, folder, &error);
+    json_t *manifest = NULL;
+    bool printed = true;
+    lq_status status = lq_pack_read(&pack, folder, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
-    json_t *manifest = json_load_file(path, 0, &cause);
-    if (manifest && as_json) {
-        json_dumpf(manifest, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-        putchar('\n');
-    } else if (manifest) print_text(folder, &pack, manifest);
+    status = lq_json_read(&manifest, path, &error);
+    if (status == LQ_OK && !as_json) print_text(folder, &pack, manifest);
+    else if (status == LQ_OK)
+        printed = cli_print_json(json_incref(manifest), JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     lq_pack_free(&pack);
-    if (!manifest) return cli_fail("%s: %s", path, cause.text);
     json_decref(manifest);
-    return CLI_DONE;
+    if (status != LQ_OK) return cli_fail_status(status, &error);
+    return printed ? CLI_DONE : CLI_FAILED;
 }

@@ -2,7 +2,7 @@
 #include "program/message.h"
 
 #include "program/verb.h"
-#include "system/text.h"
+#include "system/utf8.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -19,7 +19,7 @@ void cli_message_verb(const char *verb) {
 static void print_line(const char *format, va_list arguments) {
     char text[2 * LQ_MESSAGE_SIZE];
     vsnprintf(text, sizeof text, format, arguments);
-    lq_text_clean(text, strlen(text), "");
+    lq_utf8_clean(text, strlen(text), "");
     fflush(stdout); /* results printed so far come before the message where both go to one place */
     if (verb_name) fprintf(stderr, "lacquer %s: %s\n", verb_name, text);
     else fprintf(stderr, "lacquer: %s\n", text);

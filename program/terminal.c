@@ -1,7 +1,7 @@
 /* terminal.c - stdout through a filter: one place, so that no verb can forget it. */
 #include "program/terminal.h"
 
-#include "system/text.h"
+#include "system/utf8.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -31,10 +31,10 @@ static bool put_clean(cut *rest, const char *text, size_t length) {
     memcpy(line, rest->bytes, rest->count);
     memcpy(line + rest->count, text, length);
     length += rest->count;
-    const size_t whole = lq_text_whole(line, length);
+    const size_t whole = lq_utf8_whole(line, length);
     rest->count = length - whole;
     memcpy(rest->bytes, line + whole, rest->count);
-    lq_text_clean(line, whole, "\n\t");
+    lq_utf8_clean(line, whole, "\n\t");
     return put(line, whole);
 }
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/* From here on everything printed to stdout is cleaned on its way (system/text.h; line breaks and tabs stay).
+/* From here on everything printed to stdout is cleaned on its way (system/utf8.h; line breaks and tabs stay).
  * False: no memory for that. Messages are cleaned where they are made. */
 bool cli_guard_stdout(void);
 

@@ -8,7 +8,7 @@
 #include "system/draft.h"
 #include "system/input.h"
 #include "system/status.h"
-#include "system/text.h"
+#include "system/utf8.h"
 
 /* ------------------------------------------------------------------ values */
 
@@ -23,7 +23,7 @@ json_t *lq_json_text(const char *text) {
     char *valid = malloc(3 * length + 1), *end = valid;
     if (!valid) return NULL;
     for (size_t i = 0; i < length;) {
-        const size_t size = lq_text_character(text + i, length - i);
+        const size_t size = lq_utf8_character(text + i, length - i);
         end = size > 0 ? (char *)memcpy(end, text + i, size) + size : (char *)memcpy(end, replacement, 3) + 3;
         i += size > 0 ? size : 1;
     }

@@ -23,8 +23,8 @@ lq_status lq_output_print(lq_output *output, lq_error *error, const char *format
 lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, uint64_t offset,
                              lq_error *error);
 
-/* Publish the file under its name, replacing an older one, whose permissions it takes, and free `output`. On an error nothing is left
- * behind and the older file stands. */
+/* Publish the file under its name, replacing an older one, whose permissions it takes, and free `output`. On
+ * an error nothing is left behind and the older file stands. */
 lq_status lq_output_commit(lq_output *output, lq_error *error);
 
 /* All of that for a file whose bytes are at hand. */

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "system/number.h"
-#include "system/text.h"
+#include "system/utf8.h"
 
 static size_t tidy(char *text, size_t length) {
-    lq_text_clean(text, length, "");
+    lq_utf8_clean(text, length, "");
     while (length > 0 && text[length - 1] == ' ') length--;
     if (length > 0 && text[length - 1] == '.') length--;
     text[length] = '\0';
@@ -24,7 +24,7 @@ lq_status lq_fail(lq_error *error, lq_status status, const char *format, ...) {
     int wanted = lq_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     size_t length = wanted < 0 ? 0 : (size_t)wanted;
-    if (length >= sizeof text) length = lq_text_whole(text, sizeof text - 1);
+    if (length >= sizeof text) length = lq_utf8_whole(text, sizeof text - 1);
     length = tidy(text, length);
     memcpy(error->text, text, length + 1);
     return status;

@@ -9,12 +9,12 @@
 #include "lacquer.h"
 #include "system/json.h"
 #include "system/status.h"
-#include "system/text.h"
+#include "system/utf8.h"
 
 static void expect_clean(const char *text, const char *want) {
     char line[64];
     snprintf(line, sizeof line, "%s", text);
-    lq_text_clean(line, strlen(line), "\n\t");
+    lq_utf8_clean(line, strlen(line), "\n\t");
     assert_string_equal(line, want);
 }
 
@@ -32,12 +32,12 @@ static void test_clean(void **state) {
 static void test_whole_characters(void **state) {
     (void)state;
     const char text[] = "a\342\202\254";
-    assert_int_equal(lq_text_whole(text, 4), 4);
-    assert_int_equal(lq_text_whole(text, 3), 1);
-    assert_int_equal(lq_text_whole(text, 2), 1);
-    assert_int_equal(lq_text_whole(text, 1), 1);
-    assert_int_equal(lq_text_whole(text, 0), 0);
-    assert_int_equal(lq_text_whole("\200\200\200\200\200", 5), 5); /* nothing that could become a character */
+    assert_int_equal(lq_utf8_whole(text, 4), 4);
+    assert_int_equal(lq_utf8_whole(text, 3), 1);
+    assert_int_equal(lq_utf8_whole(text, 2), 1);
+    assert_int_equal(lq_utf8_whole(text, 1), 1);
+    assert_int_equal(lq_utf8_whole(text, 0), 0);
+    assert_int_equal(lq_utf8_whole("\200\200\200\200\200", 5), 5); /* nothing that could become a character */
 }
 
 static void test_messages(void **state) {

@@ -7,6 +7,7 @@
  */
 #include "validate/certificate_checks.h"
 
+#include "system/number.h"
 #include "system/status.h"
 #include "validate/certificate_suspects.h"
 #include "validate/stream.h"
@@ -144,7 +145,7 @@ static lq_status compare_all(stored *s, const lq_block_plan *plan, const lq_susp
 /* Texels that were fitted are as far from their nodes as the fact says. */
 static double fitted_by(const lq_table *table) {
     const char *fact = lq_table_fact(table, "fit");
-    return fact ? fmax(strtod(fact, NULL), 0.0) : 0.0;
+    return fact ? fmax(lq_strtod(fact, NULL), 0.0) : 0.0;
 }
 
 lq_status lq_check_stored(lq_certified *certified, lq_error *error) {

@@ -1,13 +1,13 @@
 /* pack.c - a pack as pictures: every function as a renderer gets it, and what its manifest says of it. */
 #include "program/view/pack.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pack/contents.h"
+#include "system/json.h"
 #include "system/status.h"
 
 /* ======================================================================================
@@ -16,13 +16,12 @@
 
 static json_t *read_manifest(const char *folder, lq_error *error) {
     char path[4096];
-    json_error_t cause;
+    json_t *root;
     if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, LQ_MANIFEST) >= sizeof path) {
         lq_fail(error, LQ_BAD_INPUT, "the name of the pack's folder is too long");
         return NULL;
     }
-    json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &cause);
-    if (!root) lq_fail(error, LQ_FORMAT, "%s: %s", path, cause.text);
+    lq_json_read(&root, path, error);
     return root;
 }
 

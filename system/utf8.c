@@ -1,5 +1,5 @@
-/* text.c - where characters begin and end in UTF-8, and which of them steer a terminal. */
-#include "system/text.h"
+/* utf8.c - where characters begin and end in UTF-8, and which of them steer a terminal. */
+#include "system/utf8.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static bool second_fits(unsigned char lead, unsigned char second) {
     return lead != 0xF4 || second < 0x90;
 }
 
-size_t lq_text_character(const char *text, size_t length) {
+size_t lq_utf8_character(const char *text, size_t length) {
     const size_t size = length > 0 ? announced((unsigned char)text[0]) : 0;
     if (size > length) return 0;
     for (size_t i = 1; i < size; i++)
@@ -32,7 +32,7 @@ size_t lq_text_character(const char *text, size_t length) {
     return size < 2 || second_fits((unsigned char)text[0], (unsigned char)text[1]) ? size : 0;
 }
 
-size_t lq_text_whole(const char *text, size_t length) {
+size_t lq_utf8_whole(const char *text, size_t length) {
     size_t start = length;
     while (start > 0 && length - start < 3 && continues(text[start - 1])) start--;
     if (start == 0) return length;
@@ -46,9 +46,9 @@ static bool steers(const char *text, size_t size, const char *kept) {
     return size == 2 && c == 0xC2 && (unsigned char)text[1] < 0xA0; /* C1, as UTF-8 has it */
 }
 
-void lq_text_clean(char *text, size_t length, const char *kept) {
+void lq_utf8_clean(char *text, size_t length, const char *kept) {
     for (size_t i = 0; i < length;) {
-        const size_t size = lq_text_character(text + i, length - i);
+        const size_t size = lq_utf8_character(text + i, length - i);
         if (size == 0) text[i] = '?';
         else if (steers(text + i, size, kept)) memset(text + i, ' ', size);
         i += size > 0 ? size : 1;
