@@ -205,7 +205,7 @@ static void say_clamped(FILE *out, lq_language language, const lq_factored *fact
         lq_literal(factored->axes[a].max, language, high);
         if (is_fixed(factored, a)) lq_say(out, language, "    $=1 c_%s = %s;\n", name, low);
         else lq_say(out, language, "    $=1 c_%s = @clamp(%s, %s, %s);\n", name, name, low, high);
-        if (language == LQ_C) fprintf(out, "    (void)c_%s;\n", name);
+        if (language == LQ_C || language == LQ_METAL) fprintf(out, "    (void)c_%s;\n", name);
     }
 }
 

@@ -141,7 +141,8 @@ static void say_top_alpha(FILE *out, lq_language language, const lq_material *m)
 static void say_fetches(FILE *out, lq_language language, const lq_lobes *lobes, const lq_tile *tiles) {
     const lq_material *m = lobes->material;
     if (lobes->channel_count == 0) {
-        if (language == LQ_C) fputs("    (void)atlas;\n    (void)mu;\n", out);
+        if (language == LQ_C || language == LQ_METAL) fputs("    (void)atlas;\n    (void)mu;\n", out);
+        if (language == LQ_METAL) fputs("    (void)linear_clamp;\n", out);
         return;
     }
     for (int a = 0; a < lobes->axis_count; a++) {

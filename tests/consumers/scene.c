@@ -1,14 +1,14 @@
-/* Prints, as JSON, what the shipped decode.h of tests/consumers/scene.json says at points of every material: a
- * list of {material, outside, q, values}, the values being those that scene.html also computes. */
+/* Prints, as JSON, what the shipped decode.h of tests/consumers/scene.json says at points of every material:
+ * a list of {material, outside, q, values}, the values being those that scene.html also computes. */
 #include "decode.h"
 
 #include "atlas.h"
 
 #include <stdio.h>
 
-enum { POINTS = 400, MATERIALS = 5 };
+enum { POINTS = 400, MATERIALS = 6 };
 
-static const char *const names[MATERIALS] = {"metal", "wood", "white", "coated_metal", "two_ranges"};
+static const char *const names[MATERIALS] = {"metal", "wood", "white", "chalk", "coated_metal", "two_ranges"};
 
 static lacquer_lobes ask(int material, lacquer_vec4 q) {
     const lacquer_vec3 rho = lacquer_make3(q.z, q.w, q.x);
@@ -20,6 +20,8 @@ static lacquer_lobes ask(int material, lacquer_vec4 q) {
     case 2:
         return lacquer_white(lacquer_atlas_texels, q.x, q.y, rho);
     case 3:
+        return lacquer_chalk(lacquer_atlas_texels, q.x);
+    case 4:
         return lacquer_coated_metal(lacquer_atlas_texels, q.x, q.y);
     default:
         return lacquer_two_ranges(lacquer_atlas_texels, q.x, q.y, q.z);
@@ -33,16 +35,20 @@ static float place(int i, int dimension, float low, float high) {
 }
 
 static int outside(int material, lacquer_vec4 q) {
-    return q.x < 0.0f || q.x > 1.0f || q.y < 0.1f || q.y > 0.5f || (material == 4 && (q.z < 0.3f || q.z > 0.5f));
+    if (q.x < 0.0f || q.x > 1.0f) return 1;
+    if (material == 3) return 0;
+    return q.y < 0.1f || q.y > 0.5f || (material == 5 && (q.z < 0.3f || q.z > 0.5f));
 }
 
 static void print(int material, lacquer_vec4 q) {
     const lacquer_lobes l = ask(material, q);
     const lacquer_vec3 s = lacquer_shade(lacquer_atlas_texels, l, q.x, q.w, q.w);
-    const float values[] = {l.top.x, l.top.y,  l.top.z,  l.top_alpha,  l.inner.x, l.inner.y, l.inner.z, l.inner_alpha,
-                            l.base.x, l.base.y, l.base.z, l.base_alpha, s.x,       s.y,       s.z,       0.0f};
-    printf("{\"material\": \"%s\", \"outside\": %s, \"q\": [%.9g, %.9g, %.9g, %.9g], \"values\": [", names[material],
-           outside(material, q) ? "true" : "false", (double)q.x, (double)q.y, (double)q.z, (double)q.w);
+    const float values[] = {l.top.x,   l.top.y,       l.top.z,  l.top_alpha, l.inner.x, l.inner.y,
+                            l.inner.z, l.inner_alpha, l.base.x, l.base.y,    l.base.z,  l.base_alpha,
+                            s.x,       s.y,           s.z,      0.0f};
+    printf("{\"material\": \"%s\", \"outside\": %s, \"q\": [%.9g, %.9g, %.9g, %.9g], \"values\": [",
+           names[material], outside(material, q) ? "true" : "false", (double)q.x, (double)q.y, (double)q.z,
+           (double)q.w);
     for (int k = 0; k < 16; k++) printf("%s%.9g", k ? ", " : "", (double)values[k]);
     printf("]}");
 }
@@ -51,8 +57,8 @@ int main(void) {
     for (int m = 0; m < MATERIALS; m++)
         for (int i = 0; i < POINTS; i++) {
             printf(m + i ? ",\n" : "[");
-            print(m, lacquer_make4(place(i, 1, -0.02f, 1.02f), place(i, 2, 0.05f, 0.6f), place(i, 3, 0.05f, 0.6f),
-                                   place(i, 4, 0.0f, 1.0f)));
+            print(m, lacquer_make4(place(i, 1, -0.02f, 1.02f), place(i, 2, 0.05f, 0.6f),
+                                   place(i, 3, 0.05f, 0.6f), place(i, 4, 0.0f, 1.0f)));
         }
     puts("]");
     return 0;

@@ -1,6 +1,6 @@
-/* The three spheres of docs/examples/spheres.mjs with the shipped decode.h. Without arguments: reads pixels as spheres.mjs
- * prints them, and says how many of each sphere there are and how far the furthest is. With cosines: the energy that each
- * sphere reflects there. */
+/* The three spheres of docs/examples/spheres.mjs with the shipped decode.h. Without arguments: reads pixels
+ * as spheres.mjs prints them, and says how many of each sphere there are and how far the furthest is. With
+ * cosines: the energy that each sphere reflects there. */
 #include "decode.h"
 
 #include "atlas.h"
@@ -14,12 +14,14 @@ static const char *const names[SPHERES] = {"gold", "wood", "paint"};
 
 static lacquer_lobes look(int sphere, float mu) {
     if (sphere == 0) return lacquer_gold(lacquer_atlas_texels, mu, 0.25f);
-    if (sphere == 1) return lacquer_lacquered_wood(lacquer_atlas_texels, mu, 0.1f, lacquer_make3(0.5f, 0.28f, 0.13f));
+    if (sphere == 1)
+        return lacquer_lacquered_wood(lacquer_atlas_texels, mu, 0.1f, lacquer_make3(0.5f, 0.28f, 0.13f));
     return lacquer_car_paint(lacquer_atlas_texels, mu, 0.3f);
 }
 
 static lacquer_vec3 energy(lacquer_lobes l) {
-    return lacquer_make3(l.top.x + l.inner.x + l.base.x, l.top.y + l.inner.y + l.base.y, l.top.z + l.inner.z + l.base.z);
+    return lacquer_make3(l.top.x + l.inner.x + l.base.x, l.top.y + l.inner.y + l.base.y,
+                         l.top.z + l.inner.z + l.base.z);
 }
 
 /* Relative where the colour is larger than 1. */
