@@ -349,9 +349,11 @@ size_t lq_atlas_table_fetches(const lq_atlas_table *table) {
 
 /* The function of the albedo of a single bounce, which lobes are normalised by. */
 static const char *find_albedo(const lq_atlas_contents *contents) {
-    for (size_t i = 0; i < contents->table_count; i++)
-        if (strcmp(contents->tables[i].table.kind->id, "albedo") == 0 && contents->tables[i].table.texture)
-            return contents->tables[i].table.texture->name;
+    for (size_t i = 0; i < contents->table_count; i++) {
+        const lq_source_table *table = &contents->tables[i].table;
+        if (strcmp(table->kind->id, "albedo") == 0 && table->texture && table->texture->axis_count == 2)
+            return table->texture->name;
+    }
     return NULL;
 }
 

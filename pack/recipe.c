@@ -231,13 +231,44 @@ static lq_status check_names(lq_recipe_reader *r) {
     return lq_refuse(r, r->recipe->tables[culprit].name, why.text);
 }
 
-/* Lobes are normalised by the albedo of a single bounce: a scene without tables gets that one. */
+/* Lobes are normalised by the albedo of a single bounce, over mu and alpha: a scene that has none gets one.
+ */
+static bool has_albedo(const lq_recipe *recipe, bool *name_taken) {
+    bool has = false;
+    *name_taken = false;
+    for (size_t i = 0; i < recipe->count; i++) {
+        const lq_recipe_table *table = &recipe->tables[i];
+        *name_taken = *name_taken || strcmp(table->name, "albedo") == 0;
+        if (table->factored || strcmp(table->kind->id, "albedo") != 0) continue;
+        has = has || (table->axes[0].size > 1 && table->axes[1].size > 1);
+    }
+    return has;
+}
+
 static lq_status add_albedo(lq_recipe_reader *r, const double *budget, size_t points) {
-    json_t *item = json_pack("{s:s, s:f, s:b, s:{s:s, s:s}}", "table", "albedo", "tolerance", 1e-4, "fit", 1,
-                             "axes", "mu", "0:1:20:sqrt", "alpha", "0:1:16:sqrt");
+    bool taken;
+    if (r->recipe->material_count == 0 || has_albedo(r->recipe, &taken)) return LQ_OK;
+    json_t *item = json_pack("{s:s, s:s, s:f, s:b, s:{s:s, s:s}}", "table", "albedo", "name",
+                             taken ? "lobe-albedo" : "albedo", "tolerance", 1e-4, "fit", 1, "axes", "mu",
+                             "0:1:20:sqrt", "alpha", "0:1:16:sqrt");
     if (!item) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
     const lq_status status = read_table(r, item, budget, points);
     json_decref(item);
+    return status;
+}
+
+/* One place is kept for the albedo. */
+static lq_status read_tables(lq_recipe_reader *r, json_t *tables, const double *budget, size_t points) {
+    lq_status status = LQ_OK;
+    const bool scene = r->recipe->material_count > 0;
+    if ((tables || !scene) && (!json_is_array(tables) || json_array_size(tables) == 0 ||
+                               json_array_size(tables) > LQ_RECIPE_TABLES - (size_t)scene))
+        return lq_refuse_value(r, "tables", scene ? "a list of 1 to 31 tables" : "a list of 1 to 32 tables");
+    for (size_t i = 0; i < json_array_size(tables) && status == LQ_OK; i++) {
+        r->entry = (int)i;
+        status = read_table(r, json_array_get(tables, i), budget, points);
+    }
+    if (status == LQ_OK) status = add_albedo(r, budget, points);
     return status == LQ_OK ? check_names(r) : status;
 }
 
@@ -258,7 +289,6 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     double budget[2] = {INFINITY, INFINITY}, bytes = 0.0;
     size_t points = POINTS;
     if (!json_is_object(root)) return lq_refuse(r, NULL, "not a recipe; accepted is a JSON object");
-    json_t *tables = json_object_get(root, "tables");
     const char *name = json_string_value(json_object_get(root, "name"));
     lq_status status = lq_recipe_keys(r, root, root_keys);
     if (status != LQ_OK) return status;
@@ -273,15 +303,7 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
     if (status != LQ_OK) return status;
     r->recipe->max_bytes = (size_t)bytes;
     status = read_materials(r, root, budget, points);
-    if (status != LQ_OK) return status;
-    if (!tables && r->recipe->material_count > 0) return add_albedo(r, budget, points);
-    if (!json_is_array(tables) || json_array_size(tables) == 0 || json_array_size(tables) > LQ_RECIPE_TABLES)
-        return lq_refuse_value(r, "tables", "a list of 1 to 32 tables");
-    for (size_t i = 0; i < json_array_size(tables) && status == LQ_OK; i++) {
-        r->entry = (int)i;
-        status = read_table(r, json_array_get(tables, i), budget, points);
-    }
-    return status == LQ_OK ? check_names(r) : status;
+    return status == LQ_OK ? read_tables(r, json_object_get(root, "tables"), budget, points) : status;
 }
 
 lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *trust, lq_error *error) {
