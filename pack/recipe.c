@@ -141,6 +141,23 @@ static lq_status read_kind(const lq_recipe_reader *r, json_t *item, lq_recipe_ta
     return LQ_OK;
 }
 
+/* "ndf" of the recipe or of a table, as NDFs write themselves; `text` stays NULL where there is none. */
+static lq_status read_ndf(const lq_recipe_reader *r, json_t *object, char **text) {
+    json_t *item = json_object_get(object, "ndf");
+    const char *said = json_string_value(item), *trusted = NULL;
+    const lq_ndf *ndf = NULL;
+    lq_error why = {""};
+    if (!item) return LQ_OK;
+    if (!said) return lq_refuse_value(r, "ndf", "\"ggx\" and others of lacquer list");
+    lq_status status = lq_ndf_trusted(said, r->trust, &trusted, &why);
+    if (status == LQ_OK) status = lq_ndf_open(&ndf, trusted, &why);
+    if (status != LQ_OK)
+        return lq_fail(r->error, status, "%s:%d: %s", r->path, lq_recipe_line(r, said), why.text);
+    *text = strdup(lq_ndf_text(ndf));
+    lq_ndf_close(ndf);
+    return *text ? LQ_OK : lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
+}
+
 static lq_status read_settings(const lq_recipe_reader *r, json_t *item, lq_recipe_table *table) {
     const lq_kind *kind = table->kind;
     static const char *const scatterings[] = {"single", "multiple", NULL}, *const maskings[] = {"correlated",
@@ -148,10 +165,12 @@ static lq_status read_settings(const lq_recipe_reader *r, json_t *item, lq_recip
                                                                                                 NULL};
     int scattering = LQ_MULTIPLE, masking = LQ_CORRELATED;
     table->settings = lq_settings_default();
-    table->settings.ndf = r->recipe->ndf;
     table->settings.tolerance = kind->tolerance;
-    lq_status status = lq_recipe_number(r, item, "tolerance", kind->finest_tolerance, LQ_LOOSEST_TOLERANCE,
-                                        &table->settings.tolerance);
+    lq_status status = read_ndf(r, item, &table->ndf);
+    if (status != LQ_OK) return status;
+    table->settings.ndf = table->ndf ? table->ndf : r->recipe->ndf ? r->recipe->ndf : "ggx";
+    status = lq_recipe_number(r, item, "tolerance", kind->finest_tolerance, LQ_LOOSEST_TOLERANCE,
+                              &table->settings.tolerance);
     if (status == LQ_OK) status = lq_recipe_choice(r, item, "scattering", scatterings, &scattering);
     if (status == LQ_OK) status = lq_recipe_choice(r, item, "masking", maskings, &masking);
     if (status != LQ_OK) return status;
@@ -202,22 +221,6 @@ static lq_status read_table(const lq_recipe_reader *r, json_t *item, const doubl
     if (table->pca_budget > 0.0 && table->pca_norm == LQ_PCA_P99)
         table->p99 = fmin(table->p99, table->pca_budget);
     return status;
-}
-
-static lq_status read_ndf(lq_recipe_reader *r, json_t *root) {
-    const char *text = json_string_value(json_object_get(root, "ndf"));
-    const lq_ndf *ndf = NULL;
-    lq_error why = {""};
-    if (json_object_get(root, "ndf") && !text)
-        return lq_refuse_value(r, "ndf", "\"ggx\" and others of lacquer list");
-    const char *trusted = "ggx";
-    lq_status status = text ? lq_ndf_trusted(text, r->trust, &trusted, &why) : LQ_OK;
-    if (status == LQ_OK) status = lq_ndf_open(&ndf, trusted, &why);
-    if (status != LQ_OK)
-        return lq_fail(r->error, status, "%s:%d: %s", r->path, lq_recipe_line(r, text), why.text);
-    r->recipe->ndf = strdup(lq_ndf_text(ndf));
-    lq_ndf_close(ndf);
-    return r->recipe->ndf ? LQ_OK : lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", r->path);
 }
 
 static lq_status check_names(lq_recipe_reader *r) {
@@ -296,7 +299,7 @@ static lq_status read_root(lq_recipe_reader *r, json_t *root) {
         return lq_refuse(r, "name", "'name' is missing or no name; accepted: letters, digits, '_', '-', '.'");
     snprintf(r->recipe->name, LQ_NAME_SIZE, "%s", name);
     status = read_formats(r, json_object_get(root, "formats"));
-    if (status == LQ_OK) status = read_ndf(r, root);
+    if (status == LQ_OK) status = read_ndf(r, root, &r->recipe->ndf);
     if (status == LQ_OK) status = read_budget(r, root, &budget[0], &budget[1]);
     if (status == LQ_OK) status = lq_recipe_count(r, root, "points", LEAST_POINTS, MOST_POINTS, &points);
     if (status == LQ_OK) status = lq_recipe_number(r, root, "max-bytes", 1.0, 1e12, &bytes);
@@ -323,8 +326,10 @@ lq_status lq_recipe_read(lq_recipe *recipe, const char *path, const lq_trust *tr
 }
 
 void lq_recipe_free(lq_recipe *recipe) {
-    for (size_t i = 0; i < recipe->count; i++)
+    for (size_t i = 0; i < recipe->count; i++) {
         for (int a = 0; a < recipe->tables[i].kind->axis_count; a++) lq_axis_free(&recipe->tables[i].axes[a]);
+        free(recipe->tables[i].ndf);
+    }
     for (size_t i = 0; i < recipe->material_count; i++) lq_scene_free(&recipe->materials[i]);
     free(recipe->ndf);
     *recipe = (lq_recipe){0};

@@ -11,7 +11,8 @@ typedef struct lq_recipe_table {
     const lq_kind *kind;
     char name[LQ_NAME_SIZE];   /* of its files and functions; the kind's id unless said */
     lq_axis axes[LQ_MAX_AXES]; /* one per axis of the kind */
-    lq_settings settings;      /* ndf points into the recipe */
+    lq_settings settings;      /* ndf points to `ndf`, or to that of the recipe */
+    char *ndf;                 /* its own; NULL: that of the recipe */
     double p99, max;           /* budget; INFINITY: none */
     size_t points;             /* where the error is measured, at least */
     int layouts[LQ_LAYOUTS];   /* published binaries to write too */

@@ -63,6 +63,7 @@ refuse 1 "bad.json:8: .*albedo-mean.*albedo-average" 's/albedo-average/albedo-me
 refuse 1 "bad.json:9: unknown axis 'nu'; accepted: mu, alpha, n, kappa" 's/"n":/"nu":/'
 refuse 1 "bad.json:5: 'max' is not understood; accepted: a number from" 's/"max": 2e-2/"max": 1e-9/'
 refuse 1 "bad.json:3: .*beckman.*ggx" 's/"formats"/"ndf": "beckman", "formats"/'
+refuse 1 "bad.json:[0-9]+: .*beckman.*ggx" 's/"table": "dfg",/"table": "dfg", "ndf": "beckman",/'
 refuse 1 "bad.json:9: silver: 4 axes have several nodes" 's/"n": "0.2", "kappa": "3.9"/"n": "0:1:4"/'
 refuse 1 "bad.json:[0-9]+: not JSON" 's/"points": 200,/"points" 200,/'
 refuse 1 "bad.json:7: second|bad.json:8: unknown second table 'dfg'" 's/albedo-average/dfg/'
