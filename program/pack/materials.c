@@ -33,6 +33,7 @@ typedef struct fitting {
     lq_packing *packing;
     lq_baked *baked;
     lq_lobes_budget budget;
+    lq_lobes_exact exact;
     double *share; /* of the budget that the next fit of a material is to keep; 0: it is done */
 } fitting;
 
@@ -49,45 +50,30 @@ static lq_status fit(void *user, size_t i, int thread, lq_error *error) {
     return lq_lobes_make(lobes, &f->baked[i], &budget, error);
 }
 
-/* Those that are to be checked next to each other, and back. */
-static size_t gather(const fitting *f, lq_lobes *lobes) {
-    size_t count = 0;
-    for (size_t i = 0; i < f->packing->recipe->material_count; i++)
-        if (f->share[i] > 0.0) lobes[count++] = f->packing->materials[i].lobes;
-    return count;
+/* What keeps its budget is done; what does not is fitted more finely. */
+static lq_status check(void *user, size_t i, int thread, lq_error *error) {
+    (void)thread;
+    const fitting *f = user;
+    lq_packed_material *m = &f->packing->materials[i];
+    if (f->share[i] == 0.0) return LQ_OK;
+    const lq_status status = lq_lobes_measure_one(&f->exact, i, &m->lobes, &m->measure, error);
+    const bool kept = m->measure.p99 <= f->budget.p99 && m->measure.max <= f->budget.max;
+    f->share[i] = kept ? 0.0 : TIGHTER * f->share[i];
+    return status;
 }
 
-/* What keeps its budget is done; what does not is fitted more finely. How many are left. */
-static size_t settle(fitting *f, const lq_lobes_measure *measures) {
-    size_t at = 0, left = 0;
-    for (size_t i = 0; i < f->packing->recipe->material_count; i++) {
-        if (f->share[i] == 0.0) continue;
-        const lq_lobes_measure *m = &measures[at++];
-        f->packing->materials[i].measure = *m;
-        f->share[i] = m->p99 <= f->budget.p99 && m->max <= f->budget.max ? 0.0 : TIGHTER * f->share[i];
-        left += f->share[i] > 0.0;
-    }
-    return left;
-}
-
-static lq_status measure(fitting *f, size_t *left, lq_error *error) {
+/* The exact values that fits are checked against. */
+static lq_status solve_exact(fitting *f, const lq_material *materials, lq_error *error) {
     const lq_recipe *recipe = f->packing->recipe;
-    const size_t count = recipe->material_count, asked = recipe->points / POINTS_PER_SET;
+    const size_t asked = recipe->points / POINTS_PER_SET;
     const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
-    lq_lobes *lobes = calloc(count, sizeof *lobes);
-    lq_lobes_measure *measures = calloc(count, sizeof *measures);
-    lq_status status = lobes && measures ? LQ_OK : out_of_memory(error);
     cli_progress bar;
     cli_progress_begin(&bar, "materials, check");
-    if (status == LQ_OK)
-        status = lq_lobes_measure_all(lobes, gather(f, lobes), sets, CHECK_LEVEL, 0.0,
-                                      (int)f->request->threads, &bar.progress, measures, error);
+    const lq_status status =
+        lq_lobes_exact_make(&f->exact, materials, recipe->material_count, sets, CHECK_LEVEL, 0.0,
+                            (int)f->request->threads, &bar.progress, error);
     cli_progress_end(&bar);
-    if (status == LQ_NOT_CONVERGED) status = LQ_OK; /* some interface took no finer level */
-    if (status == LQ_OK) *left = settle(f, measures);
-    free(lobes);
-    free(measures);
-    return status;
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* some interface took no finer level */
 }
 
 static lq_status refer(void *user, size_t i, int thread, lq_error *error) {
@@ -96,14 +82,21 @@ static lq_status refer(void *user, size_t i, int thread, lq_error *error) {
     return lq_lobes_make_fine(&f->packing->materials[i].reference, &f->baked[i], error);
 }
 
+static bool is_left(const fitting *f) {
+    for (size_t i = 0; i < f->packing->recipe->material_count; i++)
+        if (f->share[i] > 0.0) return true;
+    return false;
+}
+
 static lq_status fit_all(fitting *f, lq_error *error) {
     const size_t count = f->packing->recipe->material_count;
-    size_t left = count;
+    const int threads = (int)f->request->threads;
     lq_status status = LQ_OK;
     for (size_t i = 0; i < count; i++) f->share[i] = 1.0;
-    for (int attempt = 0; attempt < ATTEMPTS && left > 0 && status == LQ_OK; attempt++) {
-        status = lq_parallel(count, (int)f->request->threads, fit, f, NULL, error);
-        if (status == LQ_OK || status == LQ_NOT_CONVERGED) status = measure(f, &left, error);
+    for (int attempt = 0; attempt < ATTEMPTS && is_left(f) && status == LQ_OK; attempt++) {
+        status = lq_parallel(count, threads, fit, f, NULL, error);
+        if (status == LQ_OK || status == LQ_NOT_CONVERGED)
+            status = lq_parallel(count, threads, check, f, NULL, error);
     }
     return status; /* what is left misses its budget: the measured error says so */
 }
@@ -126,7 +119,8 @@ lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
     const size_t count = recipe->material_count;
     lq_material *materials = calloc(count, sizeof *materials);
     lq_baked *baked = calloc(count, sizeof *baked);
-    fitting f = {r, packing, baked, budget_of(recipe), calloc(count, sizeof *f.share)};
+    fitting f = {.request = r, .packing = packing, .baked = baked, .budget = budget_of(recipe)};
+    f.share = calloc(count, sizeof *f.share);
     lq_status status = materials && baked && f.share ? LQ_OK : out_of_memory(error);
     for (size_t i = 0; i < count && status == LQ_OK; i++) {
         packing->materials[i].from = &recipe->materials[i];
@@ -134,6 +128,7 @@ lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
         materials[i] = recipe->materials[i].material;
     }
     if (status == LQ_OK) status = bake(r, recipe, &f.budget, materials, baked, error);
+    if (status == LQ_OK) status = solve_exact(&f, materials, error);
     if (status == LQ_OK) status = fit_all(&f, error);
     if (status == LQ_OK) status = lq_parallel(count, (int)r->threads, refer, &f, NULL, error);
     for (size_t i = 0; i < count; i++) { /* which point to a material that goes */
@@ -143,6 +138,7 @@ lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
     for (size_t i = 0; baked && i < count; i++) lq_baked_free(&baked[i]);
     free(materials);
     free(baked);
+    lq_lobes_exact_free(&f.exact);
     free(f.share);
     return status;
 }

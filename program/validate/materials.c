@@ -57,19 +57,23 @@ lq_status validate_materials(const certify_request *request, const lq_pack *pack
     const size_t count = pack->material_count, asked = request->points / POINTS_PER_SET;
     const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
     if (count == 0) return LQ_OK;
-    lq_lobes *lobes = malloc(count * sizeof *lobes);
+    lq_material *materials = malloc(count * sizeof *materials);
     lq_lobes_measure *measures = malloc(count * sizeof *measures);
+    lq_lobes_exact exact = {0};
     lq_status status = LQ_NO_MEMORY;
     cli_progress bar;
     cli_progress_begin(&bar, "materials");
-    if (lobes && measures) {
-        for (size_t i = 0; i < count; i++) lobes[i] = pack->materials[i].lobes;
-        status = lq_lobes_measure_all(lobes, count, sets, -1, EXACT, request->threads, &bar.progress,
-                                      measures, error);
+    if (materials && measures) {
+        for (size_t i = 0; i < count; i++) materials[i] = pack->materials[i].material;
+        status = lq_lobes_exact_make(&exact, materials, count, sets, -1, EXACT, request->threads,
+                                     &bar.progress, error);
     } else snprintf(error->text, sizeof error->text, "out of memory");
     cli_progress_end(&bar);
+    for (size_t i = 0; i < count && status == LQ_OK; i++)
+        status = lq_lobes_measure_one(&exact, i, &pack->materials[i].lobes, &measures[i], error);
     if (status == LQ_OK) judge(request, pack, measures, exceeded);
-    free(lobes);
+    lq_lobes_exact_free(&exact);
+    free(materials);
     free(measures);
     return status;
 }
