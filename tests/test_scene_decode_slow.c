@@ -36,7 +36,13 @@ static const material materials[] = {{"metal", "q.x, q.y", NULL, 1, 0.0},
                                      {"chalk", "q.x", NULL, 0, 0.0},
                                      {"coated_metal", "q.x, q.y", NULL, 1, 0.0},
                                      {"two_ranges", "q.x, q.y, q.z", NULL, 2, 0.3}};
-enum { MATERIALS = sizeof materials / sizeof materials[0] };
+enum { MATERIALS = sizeof materials / sizeof materials[0], TABLES = MATERIALS, SUBJECTS };
+
+/* What is no material: the functions of tables, with q.w for indices and transmittances. */
+static const char tables[] =
+    "    VEC4 v = MAKE4(lacquer_transmission(ATLAS, q.x, q.y, q.x + q.y + q.w, q.w),\n"
+    "        lacquer_tir_pass(ATLAS, q.x, q.y, q.w),\n"
+    "        lacquer_dfg(ATLAS, q.x, q.y).x, lacquer_dfg(ATLAS, q.x, q.y).y);\n";
 
 /* What is compared: four numbers each, one a column of pixels, so that each is seen at a quarter of the
  * points.
@@ -46,13 +52,20 @@ static const char *const parts[PARTS] = {"l.top.x, l.top.y, l.top.z, l.top_alpha
                                          "l.inner.x, l.inner.y, l.inner.z, l.inner_alpha",
                                          "l.base.x, l.base.y, l.base.z, l.base_alpha", "s.x, s.y, s.z, r.x"};
 
-/* Declares l, the lobes, s, what they shade, and r, with another half vector. */
-static void print_point(FILE *out, const material *m) {
+/* Declares l, the lobes, s, what they shade, and r, with another half vector; last v, one part of them. */
+static void print_point(FILE *out, int subject) {
+    if (subject == TABLES) {
+        fputs(tables, out);
+        return;
+    }
+    const material *m = &materials[subject];
     fprintf(out, "    LOBES l = lacquer_%s(ATLAS, %s", m->name, m->arguments);
     if (m->rho) fprintf(out, ", MAKE3(%s)", m->rho);
     fputs(");\n    VEC3 s = lacquer_shade(ATLAS, l, q.x, q.w, q.w);\n"
           "    VEC3 r = lacquer_shade(ATLAS, l, q.x, q.w, q.y);\n",
           out);
+    fprintf(out, "    VEC4 v = MAKE4(%s);\n", parts[0]);
+    for (int k = 1; k < PARTS; k++) fprintf(out, "    if (part == %d) { v = MAKE4(%s); }\n", k, parts[k]);
 }
 
 static char *pack(const char *file) {
@@ -117,18 +130,12 @@ static void print_decode(FILE *out) {
           "void decode(int material, int part, const float *p, float *value) {\n"
           "    const VEC4 q = MAKE4(p[0], p[1], p[2], p[3]);\n",
           out);
-    for (int m = 0; m < (int)MATERIALS; m++) {
+    for (int m = 0; m < (int)SUBJECTS; m++) {
         fprintf(out, "    if (material == %d) {\n", m);
-        print_point(out, &materials[m]);
-        for (int k = 0; k < PARTS; k++)
-            fprintf(
-                out,
-                "    if (part == %d) { VEC4 v = MAKE4(%s); value[0] = v.x; value[1] = v.y; value[2] = v.z; "
-                "value[3] = v.w; }\n",
-                k, parts[k]);
-        fputs("    }\n", out);
+        print_point(out, m);
+        fputs("    value[0] = v.x; value[1] = v.y; value[2] = v.z; value[3] = v.w;\n    }\n", out);
     }
-    fputs("}\n", out);
+    fputs("    (void)part;\n}\n", out);
 }
 
 /* One lobe alone, of a white base, and its roughness. */
@@ -202,7 +209,7 @@ typedef struct shader {
 } shader;
 
 static const shader shaders[] = {
-    {"decode.glsl", "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n",
+    {"decode.glsl", "#version 300 es\n",
      "uniform sampler2D unit3, points;\nout vec4 value;\n#define ATLAS unit3\nvoid main() {\n",
      "texelFetch(points, ivec2(gl_FragCoord.xy), 0);\n    int part = int(gl_FragCoord.x) % 4", NULL, "vec"},
     {"decode.hlsl", "",
@@ -220,17 +227,16 @@ static const shader shaders[] = {
 };
 enum { SHADERS = sizeof shaders / sizeof shaders[0] };
 
-static void print_shader(FILE *out, const shader *s, const material *m, bool checked) {
+static void print_shader(FILE *out, const shader *s, int subject, bool checked) {
     size_t size;
     char *decode = read_whole(pack(s->file), &size);
     fprintf(out, "%s%s%s%s", s->before, checked ? "#define LACQUER_CHECK\n" : "", decode, s->after);
     free(decode);
-    fprintf(out, "#define LOBES LacquerLobes\n#define MAKE3 %s3\n#define VEC3 %s3\n    %s4 q = %s;\n", s->vec,
-            s->vec, s->vec, s->fetch);
-    print_point(out, m);
-    fprintf(out, "    %s4 v = %s4(%s);\n", s->vec, s->vec, parts[0]);
-    for (int k = 1; k < PARTS; k++)
-        fprintf(out, "    if (part == %d) { v = %s4(%s); }\n", k, s->vec, parts[k]);
+    fputs("#define LOBES LacquerLobes\n", out);
+    for (int k = 3; k <= 4; k++)
+        fprintf(out, "#define MAKE%d %s%d\n#define VEC%d %s%d\n", k, s->vec, k, k, s->vec, k);
+    fprintf(out, "    %s4 q = %s;\n", s->vec, s->fetch);
+    print_point(out, subject);
     fputs(strcmp(s->vec, "vec") == 0 ? "    value = v;\n}\n" : "    return v;\n}\n", out);
 }
 
@@ -249,10 +255,10 @@ static char *translate(const shader *s) {
     return text;
 }
 
-static void run_shader(const shader *s, const material *m, bool checked, const float *points, float *values) {
+static void run_shader(const shader *s, int subject, bool checked, const float *points, float *values) {
     size_t size;
     FILE *out = fopen(at("shader"), "w");
-    print_shader(out, s, m, checked);
+    print_shader(out, s, subject, checked);
     fclose(out);
     char *text = s->translate ? translate(s) : read_whole(at("shader"), &size);
     memset(values, 0, POINTS * 4 * sizeof *values);
@@ -291,17 +297,17 @@ static void test_alike(void **state) {
     const native msl = compile_native("metal", "c++", "-std=c++14 -x c++", metal);
     place(n->points);
     upload(GL_TEXTURE3, pack("atlas.ktx2"));
-    for (int m = 0; m < (int)MATERIALS; m++) {
+    for (int m = 0; m < (int)SUBJECTS; m++) {
         run_native(&c, m, n->points, n->c);
         run_native(&cpp, m, n->points, n->values);
         assert_memory_equal(n->values, n->c, sizeof n->c);
         run_native(&msl, m, n->points, n->values);
         double error = apart(n->values, n->c);
-        print_message("%-13s decode.metal %.1e", materials[m].name, error);
+        print_message("%-13s decode.metal %.1e", m == TABLES ? "tables" : materials[m].name, error);
         assert_near(error, 0.0, 1e-5);
         for (size_t s = 0; s < SHADERS; s++) {
             if (!can_run(&shaders[s])) continue;
-            run_shader(&shaders[s], &materials[m], false, n->points, n->values);
+            run_shader(&shaders[s], m, false, n->points, n->values);
             error = apart(n->values, n->c);
             print_message(", %s %.1e", shaders[s].file, error);
             assert_near(error, 0.0, 1e-5);
@@ -384,7 +390,7 @@ static void test_check(void **state) {
             else assert_memory_equal(n->values + 4 * i, n->c + 4 * i, 4 * sizeof(float));
         for (size_t s = 0; s < SHADERS; s++) {
             if (!can_run(&shaders[s])) continue;
-            run_shader(&shaders[s], &materials[m], true, n->points, n->values);
+            run_shader(&shaders[s], m, true, n->points, n->values);
             for (size_t i = 0; i < POINTS; i++) {
                 const float *v = n->values + 4 * i;
                 if (outside(&materials[m], n->points + 4 * i)) {

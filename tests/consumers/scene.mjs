@@ -23,7 +23,8 @@ function apart(values, wanted) {
 function compare({ name, check, error, values }) {
     if (error) return { name, worst: Infinity, error };
     let worst = 0;
-    points.forEach(({ outside, values: wanted }, i) => {
+    points.forEach(({ subject, outside, values: wanted }, i) => {
+        if (check && subject === 'tables') return;
         const got = values.slice(16 * i, 16 * i + 16);
         worst = Math.max(worst, check && outside ? apart(got, MAGENTA) : apart(got, wanted));
     });
