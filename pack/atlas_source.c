@@ -1,5 +1,6 @@
 /* atlas_source.c - heads, helpers and functions of tables in the decode source of an atlas. */
 #include "pack/atlas_source.h"
+#include "pack/general_source.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -137,10 +138,6 @@ void lq_say_check(FILE *out, lq_language language, const lq_check *checks, size_
  *                                        Tables
  * ====================================================================================== */
 
-static bool is_fixed(const lq_factored *factored, int axis) {
-    return factored->axes[axis].min == factored->axes[axis].max;
-}
-
 static const char *outside(lq_language language, int channels) {
     static const char *const shader[] = {"65504.0", "$c2(65504.0$f, 65504.0$f)",
                                          "$c3(65504.0$f, 65504.0$f, 65504.0$f)",
@@ -150,7 +147,7 @@ static const char *outside(lq_language language, int channels) {
     return language == LQ_C ? c[channels - 1] : shader[channels - 1];
 }
 
-static void say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels) {
+void lq_say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels) {
     lq_draft text = {.text = NULL};
     FILE *value = lq_draft_open(&text);
     if (value) lq_say(value, language, "%s", outside(language, channels));
@@ -159,7 +156,7 @@ static void say_outside(FILE *out, lq_language language, const lq_check *checks,
     free(text.text);
 }
 
-static void say_comment(FILE *out, const char *name, const lq_kind *kind) {
+void lq_say_comment(FILE *out, const char *name, const lq_kind *kind) {
     fprintf(out, "\n/* %s: %s\n *   %s   [%s]", name, kind->title, kind->quantity, kind->source);
 }
 
@@ -169,7 +166,7 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
     lq_check checks[LQ_TEXTURE_AXES];
     char head[256];
     int used = snprintf(head, sizeof head, "$(%d lacquer_%s|A", texture->channel_count, texture->name);
-    say_comment(out, texture->name, kind);
+    lq_say_comment(out, texture->name, kind);
     for (int a = 0; a < texture->axis_count; a++) {
         const lq_axis *axis = &texture->axes[a];
         fprintf(out, "\n *   %s: %s, %g to %g", axis->name, kind->axes[texture->from[a]].meaning, axis->min,
@@ -179,7 +176,7 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
     }
     fputs(" */\n", out);
     lq_say(out, language, "%s$)\n{\n", head);
-    say_outside(out, language, checks, (size_t)texture->axis_count, texture->channel_count);
+    lq_say_outside(out, language, checks, (size_t)texture->axis_count, texture->channel_count);
     fprintf(out, "    ");
     lq_say(out, language, "$=4 t = lacquer_fetch($a, ");
     lq_say_tile(out, language, tile, tile->image->height);
@@ -190,143 +187,6 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
         else lq_say(out, language, "0.0$f");
     }
     lq_say(out, language, ");\n    return %s;\n}\n", parts[texture->channel_count - 1]);
-}
-
-/* ======================================================================================
- *                                       Factors
- * ====================================================================================== */
-
-/* Arguments within their ranges: c_mu of mu. */
-static void say_clamped(FILE *out, lq_language language, const lq_factored *factored) {
-    char low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
-    for (int a = 0; a < factored->axis_count; a++) {
-        const char *name = factored->axes[a].name;
-        lq_literal(factored->axes[a].min, language, low);
-        lq_literal(factored->axes[a].max, language, high);
-        if (is_fixed(factored, a)) lq_say(out, language, "    $=1 c_%s = %s;\n", name, low);
-        else lq_say(out, language, "    $=1 c_%s = @clamp(%s, %s, %s);\n", name, name, low, high);
-        if (language == LQ_C || language == LQ_METAL) fprintf(out, "    (void)c_%s;\n", name);
-    }
-}
-
-/* Where in its tile a factor's axis is read. */
-static void say_position(FILE *out, lq_language language, const lq_factored *factored,
-                         const lq_factor *factor, int a) {
-    if (a >= factor->axis_count || factor->axes[a].texels.size == 1) {
-        lq_say(out, language, "0.0$f");
-        return;
-    }
-    const lq_texture_axis *axis = &factor->axes[a];
-    const char *name = factored->axes[axis->axis].name;
-    char value[128];
-    if (axis->coordinate == LQ_COORDINATE_AXIS) snprintf(value, sizeof value, "c_%s", name);
-    else if (axis->coordinate == LQ_COORDINATE_COSINE)
-        snprintf(value, sizeof value, "lacquer_cosine(c_%s)", name);
-    else
-        snprintf(value, sizeof value, "lacquer_critical(c_%s, c_%s)", name, factored->axes[axis->other].name);
-    lq_say_coordinate(out, language, &axis->texels, value);
-}
-
-static void say_bases(FILE *out, lq_language language, const lq_factored *factored, const lq_bases *bases,
-                      const lq_tile *tiles) {
-    const lq_factor *factor = &factored->pieces[bases->piece].factors[bases->factor];
-    const char *id = bases->suffix;
-    for (int a = 0; a < 2; a++) {
-        lq_say(out, language, "    $=1 %c%s = ", "uv"[a], id);
-        say_position(out, language, factored, factor, a);
-        fputs(";\n", out);
-    }
-    for (size_t k = 0; k < bases->image.layers; k++) {
-        lq_say(out, language, "    $=4 b%s_%zu = lacquer_fetch($a, ", id, k);
-        lq_say_tile(out, language, &tiles[k], tiles[k].image->height);
-        fprintf(out, ", u%s, v%s);\n", id, id);
-    }
-}
-
-/* A stream: products of bases, a few a line. */
-static void say_stream(FILE *out, lq_language language, const lq_factored *factored, int p, int k) {
-    enum { PER_LINE = 3 };
-    const lq_term_sum *sum = &factored->pieces[p].streams[k];
-    lq_say(out, language, "    $=1 s%d = ", k);
-    if (sum->term_count == 0) lq_say(out, language, "0.0$f");
-    for (size_t t = 0; t < sum->term_count; t++) {
-        if (t > 0) fputs(t % PER_LINE == 0 ? "\n        + " : " + ", out);
-        for (int g = 0; g < sum->factor_count; g++) {
-            const int base = sum->index[t * (size_t)sum->factor_count + (size_t)g];
-            fprintf(out, "%sb%d_%d_%d.%c", g > 0 ? " * " : "", p, sum->factors[g], base / LQ_BASES_PER_LAYER,
-                    "xyzw"[base % LQ_BASES_PER_LAYER]);
-        }
-    }
-    fputs(";\n", out);
-}
-
-static void say_value(FILE *out, lq_language language, const lq_factored *factored, const lq_piece *piece) {
-    char low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
-    lq_say(out, language, "    return @clamp(");
-    if (piece->value == LQ_VALUE_SQUARE) fputs("s0 * s0", out);
-    else if (piece->value == LQ_VALUE_BEER)
-        lq_say(out, language, "s0 * @pow(c_%s, @exp2(s1))", factored->axes[piece->value_axis].name);
-    else fputs("s0", out);
-    fprintf(out, ", %s, %s);\n", lq_literal(factored->value_min, language, low),
-            lq_literal(factored->value_max, language, high));
-}
-
-/* The sides of a piece's box that are not the table's own. */
-static void say_condition(FILE *out, lq_language language, const lq_factored *factored,
-                          const lq_piece *piece) {
-    bool first = true;
-    char text[LQ_LITERAL_SIZE];
-    fputs("    if (", out);
-    for (int a = 0; a < factored->axis_count; a++)
-        for (int upper = 0; upper < 2; upper++) {
-            const double side = upper ? piece->max[a] : piece->min[a];
-            if (side == (upper ? factored->axes[a].max : factored->axes[a].min)) continue;
-            fprintf(out, "%sc_%s %s %s", first ? "" : " && ", factored->axes[a].name,
-                    upper ? "<=" : ">=", lq_literal(side, language, text));
-            first = false;
-        }
-    fputs(first ? "true) {\n" : ") {\n", out);
-}
-
-static void say_pieces(FILE *out, lq_language language, const lq_factored_textures *textures,
-                       const lq_tile *tiles) {
-    const lq_factored *factored = textures->factored;
-    for (int p = 0; p < factored->piece_count; p++) {
-        const lq_piece *piece = &factored->pieces[p];
-        const bool last = p == factored->piece_count - 1;
-        if (!last) say_condition(out, language, factored, piece);
-        size_t tile = 0;
-        for (size_t i = 0; i < textures->count; tile += textures->bases[i++].image.layers)
-            if (textures->bases[i].piece == p)
-                say_bases(out, language, factored, &textures->bases[i], tiles + tile);
-        for (int k = 0; k < piece->stream_count; k++) say_stream(out, language, factored, p, k);
-        say_value(out, language, factored, piece);
-        if (!last) fputs("    }\n", out);
-    }
-}
-
-static void say_factored(FILE *out, lq_language language, const lq_factored_textures *textures,
-                         const lq_kind *kind, const lq_tile *tiles) {
-    const lq_factored *factored = textures->factored;
-    lq_check checks[LQ_MAX_AXES];
-    size_t count = 0;
-    char head[256];
-    int used = snprintf(head, sizeof head, "$(1 lacquer_%s|A", textures->name);
-    say_comment(out, textures->name, kind);
-    for (int a = 0; a < factored->axis_count; a++) {
-        const char *name = factored->axes[a].name;
-        fprintf(out, "\n *   %s: %s, %g to %g", name, kind->axes[a].meaning, factored->axes[a].min,
-                factored->axes[a].max);
-        if (is_fixed(factored, a)) continue;
-        checks[count++] = (lq_check){name, factored->axes[a].min, factored->axes[a].max};
-        used += snprintf(head + used, sizeof head - (size_t)used, "|1 %s", name);
-    }
-    fputs(" */\n", out);
-    lq_say(out, language, "%s$)\n{\n", head);
-    say_outside(out, language, checks, count, 1);
-    say_clamped(out, language, factored);
-    say_pieces(out, language, textures, tiles);
-    fputs("}\n", out);
 }
 
 /* The most that any of its pieces takes. */
@@ -347,16 +207,6 @@ size_t lq_atlas_table_fetches(const lq_atlas_table *table) {
  *                                       The file
  * ====================================================================================== */
 
-/* The function of the albedo of a single bounce, which lobes are normalised by. */
-static const char *find_albedo(const lq_atlas_contents *contents) {
-    for (size_t i = 0; i < contents->table_count; i++) {
-        const lq_source_table *table = &contents->tables[i].table;
-        if (strcmp(table->kind->id, "albedo") == 0 && table->texture && table->texture->axis_count == 2)
-            return table->texture->name;
-    }
-    return NULL;
-}
-
 static void say_all(FILE *out, lq_language language, const lq_atlas_contents *contents) {
     say_begin(out, language);
     say_fetch(out, language, &contents->atlas->image);
@@ -365,9 +215,12 @@ static void say_all(FILE *out, lq_language language, const lq_atlas_contents *co
         const lq_source_table *table = &contents->tables[i].table;
         const lq_tile *tiles = &contents->atlas->tiles[contents->tables[i].tile];
         if (table->texture) say_texture(out, language, table->texture, table->kind, tiles);
-        else say_factored(out, language, table->factored, table->kind, tiles);
+        else lq_say_factored(out, language, table->factored, table->kind, tiles);
     }
-    if (contents->material_count > 0) lq_say_lobes(out, language, contents, find_albedo(contents));
+    const lq_general general = lq_general_find(contents);
+    if (contents->material_count > 0 || lq_general_any(&general))
+        lq_say_lobes(out, language, contents, general.albedo ? general.albedo->table.texture->name : NULL);
+    lq_say_general(out, language, &general);
     if (language != LQ_WGSL) fputs("\n#endif\n", out);
 }
 

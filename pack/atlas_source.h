@@ -37,7 +37,7 @@ lq_status lq_atlas_source_text(lq_language language, const lq_atlas_contents *co
 size_t lq_atlas_table_fetches(const lq_atlas_table *table);
 size_t lq_atlas_material_fetches(const lq_atlas_material *material);
 
-/* What atlas_source.c and lobes_source.c share: */
+/* What the files that write it share: */
 
 /* "lacquer_fetch(...)" of a tile as an expression; u and v name where in [0,1] times texels - 1. */
 void lq_say_tile(FILE *out, lq_language language, const lq_tile *tile, size_t rows);
@@ -51,6 +51,22 @@ typedef struct lq_check {
     double min, max;
 } lq_check;
 void lq_say_check(FILE *out, lq_language language, const lq_check *checks, size_t count, const char *value);
+
+/* The same where the value is that many channels of a table. */
+void lq_say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels);
+
+/* The beginning of a table's comment, left open for its arguments. */
+void lq_say_comment(FILE *out, const char *name, const lq_kind *kind);
+
+/* The function of a factored table, and of one that may differ by colour its overload "NAME_rgb": that takes
+ * three values of each such axis, and fetches what does not depend on them once. */
+void lq_say_factored(FILE *out, lq_language language, const lq_factored_textures *textures,
+                     const lq_kind *kind, const lq_tile *tiles);
+/* Whether it has one, and the fetches of that. */
+bool lq_factored_has_colours(const lq_factored_textures *textures, const lq_kind *kind);
+size_t lq_factored_colour_fetches(const lq_factored_textures *textures, const lq_kind *kind);
+/* Axes of a kind that may differ by colour, bit 1 << axis: of a metal its index, of a coating its medium. */
+unsigned lq_colour_axes(const lq_kind *kind);
 
 /* The functions of all materials, and what shades with them; `albedo` is the function of that table. */
 void lq_say_lobes(FILE *out, lq_language language, const lq_atlas_contents *contents, const char *albedo);

@@ -87,6 +87,7 @@ static void add_identifiers(names *n, size_t table) {
     char identifier[LQ_NAME_SIZE];
     lq_make_identifier(identifier, name_of(n->recipe, table));
     add(n, table, identifier, "");
+    if (n->recipe->atlas) add(n, table, identifier, "_rgb"); /* of three colours */
     if (table < n->recipe->count) add_all(n, table, identifier, "_", "_texels");
 }
 

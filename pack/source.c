@@ -14,10 +14,13 @@
 #include <stdlib.h>
 
 const char *const *lq_source_helpers(void) {
-    static const char *const helpers[] = {"texel", "clamp",   "clamp01",      "filter", "critical", "cosine",
-                                          "fetch", "slices",  "mix",          "base",   "lobe",     "lobes",
-                                          "shade", "outside", "atlas_texels", "make2",  "make3",    "make4",
-                                          "vec2",  "vec3",    "vec4",         NULL};
+    static const char *const helpers[] = {"texel",    "clamp",        "clamp01",   "filter",
+                                          "critical", "cosine",       "fetch",     "slices",
+                                          "mix",      "base",         "lobe",      "lobes",
+                                          "shade",    "outside",      "conductor", "coated_lambertian",
+                                          "layered",  "atlas_texels", "make2",     "make3",
+                                          "make4",    "vec2",         "vec3",      "vec4",
+                                          NULL};
     return helpers;
 }
 
