@@ -8,7 +8,7 @@
 
 enum { BORDER = 1, CHANNELS = 4, WIDEST = 4096 };
 
-lq_status lq_atlas_add(lq_atlas *atlas, const lq_image *image, const char *name, size_t *first,
+lq_status lq_atlas_add(lq_atlas *atlas, const lq_image *image, int used, const char *name, size_t *first,
                        lq_error *error) {
     if (image->depth > 1)
         return lq_fail(error, LQ_BAD_INPUT,
@@ -21,7 +21,9 @@ lq_status lq_atlas_add(lq_atlas *atlas, const lq_image *image, const char *name,
         atlas->tiles = tiles;
         atlas->room = room;
     }
-    for (size_t l = 0; l < image->layers; l++) atlas->tiles[atlas->count++] = (lq_tile){image, l, 0, 0};
+    for (size_t l = 0; l < image->layers; l++)
+        atlas->tiles[atlas->count++] =
+            (lq_tile){.image = image, .layer = l, .used = l + 1 < image->layers ? image->channels : used};
     return LQ_OK;
 }
 
@@ -94,30 +96,65 @@ static size_t clamped(size_t i, size_t size) { /* i counts from the border */
 
 static void copy_tile(const lq_atlas *atlas, const lq_tile *tile) {
     const lq_image *from = tile->image;
-    const size_t channels = (size_t)from->channels, first = tile->layer * from->width * from->height;
+    const size_t channels = (size_t)from->channels, used = (size_t)tile->used;
+    const size_t first = tile->layer * from->width * from->height;
     for (size_t y = 0; y < height_of(tile); y++)
         for (size_t x = 0; x < width_of(tile); x++) {
             const size_t texel = first + clamped(y, from->height) * from->width + clamped(x, from->width);
             const size_t to = (tile->y - BORDER + y) * atlas->image.width + tile->x - BORDER + x;
-            memcpy(&atlas->image.data[to * CHANNELS], &from->data[texel * channels],
-                   channels * sizeof(float));
+            memcpy(&atlas->image.data[to * CHANNELS + (size_t)tile->channel], &from->data[texel * channels],
+                   used * sizeof(float));
         }
+}
+
+/* The tile in whose channels a tile finds room: an earlier one of its size, or itself. */
+static size_t host_of(const lq_atlas *atlas, size_t i, const int *taken) {
+    const lq_tile *tile = &atlas->tiles[i];
+    for (size_t h = 0; h < i; h++)
+        if (taken[h] > 0 && taken[h] + tile->used <= CHANNELS &&
+            width_of(&atlas->tiles[h]) == width_of(tile) && height_of(&atlas->tiles[h]) == height_of(tile))
+            return h;
+    return i;
+}
+
+/* hosts[i] of every tile; channels are set. `taken`: of those that host themselves. */
+static void share(const lq_atlas *atlas, size_t *hosts, int *taken) {
+    for (size_t i = 0; i < atlas->count; i++) {
+        const size_t h = hosts[i] = host_of(atlas, i, taken);
+        atlas->tiles[i].channel = h == i ? 0 : taken[h];
+        if (h == i) taken[i] = 0;
+        taken[h] += atlas->tiles[i].used;
+        if (h != i) taken[i] = 0;
+    }
 }
 
 lq_status lq_atlas_make(lq_atlas *atlas, lq_error *error) {
     lq_tile **order = malloc((atlas->count + 1) * sizeof *order);
     size_t *skyline = malloc((WIDEST + 1) * sizeof *skyline);
-    if (!order || !skyline) {
+    size_t *hosts = calloc(atlas->count + 1, sizeof *hosts);
+    int *taken = calloc(atlas->count + 1, sizeof *taken);
+    if (!order || !skyline || !hosts || !taken) {
         free(order);
         free(skyline);
+        free(hosts);
+        free(taken);
         return lq_fail(error, LQ_NO_MEMORY, "no memory for an atlas");
     }
-    for (size_t i = 0; i < atlas->count; i++) order[i] = &atlas->tiles[i];
-    qsort(order, atlas->count, sizeof *order, by_height);
-    const size_t width = choose_width(order, atlas->count, skyline);
-    const size_t height = place(order, atlas->count, width, skyline);
+    size_t count = 0;
+    share(atlas, hosts, taken);
+    for (size_t i = 0; i < atlas->count; i++)
+        if (hosts[i] == i) order[count++] = &atlas->tiles[i];
+    qsort(order, count, sizeof *order, by_height);
+    const size_t width = choose_width(order, count, skyline);
+    const size_t height = place(order, count, width, skyline);
+    for (size_t i = 0; i < atlas->count; i++) {
+        atlas->tiles[i].x = atlas->tiles[hosts[i]].x;
+        atlas->tiles[i].y = atlas->tiles[hosts[i]].y;
+    }
     free(order);
     free(skyline);
+    free(hosts);
+    free(taken);
     lq_status status = lq_image_create(&atlas->image, width, height, 1, 1, CHANNELS, error);
     for (size_t i = 0; i < atlas->count && status == LQ_OK; i++) copy_tile(atlas, &atlas->tiles[i]);
     return status;

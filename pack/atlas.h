@@ -8,10 +8,12 @@
 
 #include "pack/image.h"
 
-/* One layer of an image. */
+/* One layer of an image. Tiles of the same size that do not use all channels share their texels. */
 typedef struct lq_tile {
     const lq_image *image; /* 2D: depth 1; 1 to 4 channels */
     size_t layer;
+    int used;    /* channels of the image that mean something */
+    int channel; /* which channel of the atlas is its first */
     size_t x, y; /* where its first texel is in the atlas */
 } lq_tile;
 
@@ -21,9 +23,9 @@ typedef struct lq_atlas {
     lq_image image; /* four channels */
 } lq_atlas;
 
-/* All layers of an image, in a row of the list: the index of the first. `image` stays until the atlas is
- * made. LQ_BAD_INPUT: a volume. */
-lq_status lq_atlas_add(lq_atlas *atlas, const lq_image *image, const char *name, size_t *first,
+/* All layers of an image, in a row of the list: the index of the first. `used`: channels of its last layer;
+ * the others use all. `image` stays until the atlas is made. LQ_BAD_INPUT: a volume. */
+lq_status lq_atlas_add(lq_atlas *atlas, const lq_image *image, int used, const char *name, size_t *first,
                        lq_error *error);
 
 /* Place all tiles and copy them. The same tiles give the same atlas. */

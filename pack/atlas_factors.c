@@ -56,9 +56,19 @@ static void say_bases(FILE *out, lq_language language, const lq_factored *factor
     }
 }
 
+/* The first tile of the bases of a factor. */
+static const lq_tile *tiles_of(const lq_factored_textures *textures, const lq_tile *tiles, int piece,
+                               int factor) {
+    for (size_t i = 0; i < textures->count; tiles += textures->bases[i++].image.layers)
+        if (textures->bases[i].piece == piece && textures->bases[i].factor == factor) break;
+    return tiles;
+}
+
 /* A stream: products of bases, a few a line. */
-static void say_stream(FILE *out, lq_language language, const lq_factored *factored, int p, int k) {
+static void say_stream(FILE *out, lq_language language, const lq_factored_textures *textures,
+                       const lq_tile *tiles, int p, int k) {
     enum { PER_LINE = 3 };
+    const lq_factored *factored = textures->factored;
     const lq_term_sum *sum = &factored->pieces[p].streams[k];
     lq_say(out, language, "    $=1 s%d = ", k);
     if (sum->term_count == 0) lq_say(out, language, "0.0$f");
@@ -66,8 +76,10 @@ static void say_stream(FILE *out, lq_language language, const lq_factored *facto
         if (t > 0) fputs(t % PER_LINE == 0 ? "\n        + " : " + ", out);
         for (int g = 0; g < sum->factor_count; g++) {
             const int base = sum->index[t * (size_t)sum->factor_count + (size_t)g];
-            fprintf(out, "%sb%d_%d_%d.%c", g > 0 ? " * " : "", p, sum->factors[g], base / LQ_BASES_PER_LAYER,
-                    "xyzw"[base % LQ_BASES_PER_LAYER]);
+            const int layer = base / LQ_BASES_PER_LAYER;
+            const lq_tile *tile = tiles_of(textures, tiles, p, sum->factors[g]) + layer;
+            fprintf(out, "%sb%d_%d_%d.%c", g > 0 ? " * " : "", p, sum->factors[g], layer,
+                    "xyzw"[tile->channel + base % LQ_BASES_PER_LAYER]);
         }
     }
     fputs(";\n", out);
@@ -134,7 +146,7 @@ static void say_piece(FILE *out, lq_language language, const lq_factored_texture
     const lq_piece *piece = &factored->pieces[p];
     say_all_bases(out, language, textures, tiles, p, colours, false);
     if (colours == 0) {
-        for (int k = 0; k < piece->stream_count; k++) say_stream(out, language, factored, p, k);
+        for (int k = 0; k < piece->stream_count; k++) say_stream(out, language, textures, tiles, p, k);
         say_value(out, language, factored, piece, "return");
         return;
     }
@@ -144,7 +156,7 @@ static void say_piece(FILE *out, lq_language language, const lq_factored_texture
         fputs("    {\n", out);
         say_clamped(out, language, factored, colours, part);
         say_all_bases(out, language, textures, tiles, p, colours, true);
-        for (int k = 0; k < piece->stream_count; k++) say_stream(out, language, factored, p, k);
+        for (int k = 0; k < piece->stream_count; k++) say_stream(out, language, textures, tiles, p, k);
         say_value(out, language, factored, piece, to);
         fputs("    }\n", out);
     }

@@ -162,7 +162,8 @@ void lq_say_comment(FILE *out, const char *name, const lq_kind *kind) {
 
 static void say_texture(FILE *out, lq_language language, const lq_texture *texture, const lq_kind *kind,
                         const lq_tile *tile) {
-    static const char *const parts[] = {"t.x", "$c2(t.x, t.y)", "$c3(t.x, t.y, t.z)", "t"};
+    const char c[] = {"xyzw"[tile->channel], "xyzw"[(tile->channel + 1) % 4],
+                      "xyzw"[(tile->channel + 2) % 4]};
     lq_check checks[LQ_TEXTURE_AXES];
     char head[256];
     int used = snprintf(head, sizeof head, "$(%d lacquer_%s|A", texture->channel_count, texture->name);
@@ -186,7 +187,13 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
             lq_say_coordinate(out, language, &texture->axes[a], texture->axes[a].name);
         else lq_say(out, language, "0.0$f");
     }
-    lq_say(out, language, ");\n    return %s;\n}\n", parts[texture->channel_count - 1]);
+    lq_say(out, language, ");\n");
+    if (texture->channel_count == 1) fprintf(out, "    return t.%c;\n}\n", c[0]);
+    else if (texture->channel_count == 2)
+        lq_say(out, language, "    return $c2(t.%c, t.%c);\n}\n", c[0], c[1]);
+    else if (texture->channel_count == 3)
+        lq_say(out, language, "    return $c3(t.%c, t.%c, t.%c);\n}\n", c[0], c[1], c[2]);
+    else fputs("    return t;\n}\n", out);
 }
 
 /* The most that any of its pieces takes. */

@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 /* A staging folder is TARGET.new-XXXXXX with this file in it: a folder of that name without it is somebody
- * else's, unless it is empty or a pack as it was made. The mark goes last before the exchange, when the folder
- * is such a pack. */
+ * else's, unless it is empty or a pack as it was made. The mark goes last before the exchange, when the
+ * folder is such a pack. */
 static const char MARK[] = ".lacquer-staging";
 static const char STAGING_SUFFIX[] = ".new-XXXXXX";
 

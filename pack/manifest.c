@@ -23,6 +23,13 @@ const lq_image *lq_packed_image(const lq_packed *packed, size_t i) {
     return packed->factored ? &packed->factors.bases[i].image : &packed->texture.image;
 }
 
+int lq_packed_channels(const lq_packed *packed, size_t i) {
+    if (!packed->factored) return packed->texture.channel_count;
+    const lq_bases *bases = &packed->factors.bases[i];
+    const size_t count = packed->factored->pieces[bases->piece].factors[bases->factor].base_count;
+    return (int)((count - 1) % LQ_BASES_PER_LAYER) + 1;
+}
+
 void lq_packed_stem(const lq_packed *packed, size_t i, char *stem, size_t size) {
     if (packed->factored) snprintf(stem, size, "%s.%s", packed->from->name, packed->factors.bases[i].suffix);
     else snprintf(stem, size, "%s", packed->from->name);
@@ -160,13 +167,15 @@ static json_t *describe_fixed(const lq_recipe_table *from) {
     return fixed;
 }
 
-/* Where the image is in the atlas: its layers, texels of the first one. */
+/* Where the image is in the atlas: of each layer x, y, width, height and, if not 0, its first channel. */
 static json_t *describe_tiles(const lq_packing *packing, size_t first, size_t count) {
     json_t *tiles = json_array();
     for (size_t i = first; i < first + count; i++) {
         const lq_tile *tile = &packing->atlas.tiles[i];
-        lq_json_append(&tiles, json_pack("[I, I, I, I]", (json_int_t)tile->x, (json_int_t)tile->y,
-                                         (json_int_t)tile->image->width, (json_int_t)tile->image->height));
+        json_t *place = json_pack("[I, I, I, I]", (json_int_t)tile->x, (json_int_t)tile->y,
+                                  (json_int_t)tile->image->width, (json_int_t)tile->image->height);
+        if (tile->channel > 0) lq_json_append(&place, json_integer(tile->channel));
+        lq_json_append(&tiles, place);
     }
     return tiles;
 }

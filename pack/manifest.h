@@ -55,6 +55,7 @@ int lq_packing_languages(const lq_recipe *recipe);
  * array in C. */
 size_t lq_packed_images(const lq_packed *packed);
 const lq_image *lq_packed_image(const lq_packed *packed, size_t i);
+int lq_packed_channels(const lq_packed *packed, size_t i); /* of its last layer, that are in use */
 void lq_packed_stem(const lq_packed *packed, size_t i, char *stem, size_t size);
 void lq_packed_array(const lq_packed *packed, size_t i, char *array, size_t size);
 

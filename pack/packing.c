@@ -19,14 +19,14 @@ lq_status lq_packing_place(lq_packing *p, lq_error *error) {
     for (size_t t = 0; t < recipe->count; t++, first++)
         for (size_t i = 0; i < lq_packed_images(&p->tables[t]) && status == LQ_OK; i++) {
             size_t tile;
-            status = lq_atlas_add(&p->atlas, lq_packed_image(&p->tables[t], i), recipe->tables[t].name, &tile,
-                                  error);
+            status = lq_atlas_add(&p->atlas, lq_packed_image(&p->tables[t], i),
+                                  lq_packed_channels(&p->tables[t], i), recipe->tables[t].name, &tile, error);
             if (i == 0) *first = tile;
         }
     for (size_t m = 0; m < recipe->material_count && status == LQ_OK; m++, first++)
         if (p->materials[m].lobes.channel_count > 0)
-            status =
-                lq_atlas_add(&p->atlas, &p->materials[m].lobes.image, p->materials[m].name, first, error);
+            status = lq_atlas_add(&p->atlas, &p->materials[m].lobes.image, LQ_LOBES_PER_TEXEL,
+                                  p->materials[m].name, first, error);
     return status == LQ_OK ? lq_atlas_make(&p->atlas, error) : status;
 }
 

@@ -36,13 +36,15 @@ static lq_status make_reference(reference *r, const lq_packing *packing, lq_erro
         if (strcmp(table->from->kind->id, "albedo") != 0 || table->factored || r->albedo_count > 0) continue;
         r->albedo = (lq_atlas_table){{table->from->kind, &table->texture, NULL}, 0};
         r->albedo_count = 1;
-        status = lq_atlas_add(&r->atlas, &table->texture.image, table->from->name, &r->albedo.tile, error);
+        status = lq_atlas_add(&r->atlas, &table->texture.image, table->texture.channel_count,
+                              table->from->name, &r->albedo.tile, error);
     }
     for (size_t i = 0; i < recipe->material_count && status == LQ_OK; i++) {
         const lq_packed_material *m = &packing->materials[i];
         r->materials[i] = (lq_atlas_material){m->name, &m->reference, 0};
         if (m->reference.channel_count > 0)
-            status = lq_atlas_add(&r->atlas, &m->reference.image, m->name, &r->materials[i].tile, error);
+            status = lq_atlas_add(&r->atlas, &m->reference.image, LQ_LOBES_PER_TEXEL, m->name,
+                                  &r->materials[i].tile, error);
     }
     return status == LQ_OK ? lq_atlas_make(&r->atlas, error) : status;
 }

@@ -88,20 +88,24 @@ static lq_status read_files(const reader *r, json_t *files, lq_image *image, lq_
     return status;
 }
 
-/* Layer `layer` of an image out of the atlas, at the tile [x, y, width, height]. */
+/* Layer `layer` of an image out of the atlas, at the tile [x, y, width, height], or with its first channel
+ * after them. */
 static lq_status cut_tile(const reader *r, json_t *tile, size_t layer, lq_image *image, const char *name) {
     const lq_image *atlas = &r->atlas->texture.image;
+    const json_t *first = json_array_get(tile, 4);
+    const json_int_t channel = first ? json_integer_value(first) : 0;
     json_int_t x, y, width, height;
-    if (json_unpack(tile, "[I, I, I, I]", &x, &y, &width, &height) != 0 || x < 0 || y < 0 ||
-        (size_t)width != image->width || (size_t)height != image->height ||
+    if (json_unpack(tile, "[I, I, I, I]", &x, &y, &width, &height) != 0 || channel < 0 || channel > 3 ||
+        x < 0 || y < 0 || (size_t)width != image->width || (size_t)height != image->height ||
         (size_t)x + image->width > atlas->width || (size_t)y + image->height > atlas->height)
         return refuse(r, name, "a tile that is not in the atlas, or not of the size of its texture");
-    const size_t channels = (size_t)image->channels;
+    const size_t channels = (size_t)image->channels, skipped = (size_t)channel;
+    const size_t copied = channels < 4 - skipped ? channels : 4 - skipped;
     for (size_t row = 0; row < image->height; row++)
         for (size_t column = 0; column < image->width; column++)
             memcpy(image->data + ((layer * image->height + row) * image->width + column) * channels,
-                   atlas->data + (((size_t)y + row) * atlas->width + (size_t)x + column) * 4,
-                   channels * sizeof(float));
+                   atlas->data + (((size_t)y + row) * atlas->width + (size_t)x + column) * 4 + skipped,
+                   copied * sizeof(float));
     return LQ_OK;
 }
 

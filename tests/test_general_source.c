@@ -26,7 +26,7 @@ static const char recipe[] =
     "\"0.04:0.7:16\",\n"
     " \"eta\": \"0.58:0.75:10\"}, \"pca\": {\"separate\": \"alpha:8\", \"critical\": true, \"sweeps\": 5}},\n"
     "{\"mapping\": \"f\", \"axes\": {\"alpha\": \"0.005:0.9:256\"}, \"pca\": {\"value\": \"square\"}},\n"
-    "{\"mapping\": \"f-inverse\", \"axes\": {\"f\": \"0.0001:1000:128:power6\"}},\n"
+    "{\"mapping\": \"f-inverse\", \"axes\": {\"f\": \"0.0001:1000:256:power6\"}},\n"
     "{\"table\": \"transmission\", \"tolerance\": 1e-3, \"axes\": {\"mu\": \"0.1:1:20:sqrt\", \"alpha\": "
     "\"0.1:0.6:6\",\n \"eta\": \"1.35:1.7:4\", \"tau\": \"0.2:1:6\"}, \"pca\": {\"separate\": \"tau,eta\", "
     "\"value\": "
