@@ -241,10 +241,23 @@ static void say_coated_lambertian(FILE *out, lq_language language, const lq_gene
  *                              A dielectric over a conductor (B18)
  * ====================================================================================== */
 
+/* f of a roughness, below its table by the square law that it tends to: nothing of a smooth interface. */
 static void say_f(FILE *out, lq_language language, const lq_general *g, const char *name, const char *alpha) {
-    lq_say(out, language, "    $=1 %s = ", name);
+    char low[LQ_LITERAL_SIZE];
+    double range[2] = {0.0, 1.0};
+    range_of(g->f, 0, range);
+    lq_say(out, language, "    $=1 %s_low = @clamp(%s / %s, 0.0$f, 1.0$f);\n    $=1 %s = %s_low * %s_low * ",
+           name, alpha, lq_literal(range[0], language, low), name, name, name);
     CALL(g->f, false, alpha);
     fputs(";\n", out);
+}
+
+static void say_inverse(FILE *out, lq_language language, const lq_general *g, const char *s) {
+    char low[LQ_LITERAL_SIZE];
+    double range[2] = {0.0, 1.0};
+    range_of(g->inverse, 0, range);
+    lq_say(out, language, "@sqrt(@clamp(%s / %s, 0.0$f, 1.0$f)) * ", s, lq_literal(range[0], language, low));
+    CALL(g->inverse, false, s);
 }
 
 /* Cosines on both sides, and the base's index as it is seen from inside, which has ranges of its own. */
@@ -301,7 +314,7 @@ static void say_roughness(FILE *out, lq_language language, const lq_general *g) 
     lq_say(out, language,
            "    $=1 s = s_up + jacobian * (s_down + s_base + again * (s_base + s_top));\n"
            "    l.inner_alpha = ");
-    CALL(g->inverse, false, "s");
+    say_inverse(out, language, g, "s");
     fputs(";\n", out);
 }
 
