@@ -6,8 +6,8 @@
 
 #include "pca/assemble.h"
 #include "pca/factors.h"
-#include "pca/sequential.h"
 #include "pca/refine_start.h"
+#include "pca/sequential.h"
 #include "system/status.h"
 
 /* ------------------------------------------------------------------ texels */
@@ -17,6 +17,10 @@ static size_t nodes_within(const lq_axis *axis, double min, double max) {
     size_t count = 0;
     for (size_t i = 0; i < axis->size; i++) count += axis->nodes[i] >= min && axis->nodes[i] <= max;
     return count;
+}
+
+static lq_map map_of(double exponent) {
+    return exponent == 1.0 ? LQ_MAP_LINEAR : exponent == 2.0 ? LQ_MAP_SQRT : LQ_MAP_POWER;
 }
 
 /* Texels along a table axis: its nodes where these are regular and all in the piece, otherwise as many,
@@ -31,20 +35,22 @@ static lq_status axis_texels(const lq_table *table, const lq_pca_options *option
     const double exponent = options->exponents[a] > 0.0 ? options->exponents[a]
                             : whole                     ? axis->exponent
                                                         : 1.0;
-    const lq_map map = exponent == 1.0 ? LQ_MAP_LINEAR : exponent == 2.0 ? LQ_MAP_SQRT : LQ_MAP_POWER;
     *out = (lq_texture_axis){.coordinate = LQ_COORDINATE_AXIS, .axis = a};
-    return lq_axis_make(&out->texels, axis->name, piece->min[a], piece->max[a], count, map, exponent, error);
+    return lq_axis_make(&out->texels, axis->name, piece->min[a], piece->max[a], count, map_of(exponent),
+                        exponent, error);
 }
 
 /* The texels of a coordinate other than an axis itself, over what it covers in the piece. */
 static lq_status other_texels(lq_texture_axis *out, const char *name, double min, double max, size_t count,
-                              lq_error *error) {
-    return lq_axis_make(&out->texels, name, min, max, count, LQ_MAP_LINEAR, 1.0, error);
+                              double exponent, lq_error *error) {
+    if (exponent <= 0.0) exponent = 1.0;
+    return lq_axis_make(&out->texels, name, min, max, count, map_of(exponent), exponent, error);
 }
 
-/* mu from the critical cosine, from as far below as the smallest eta needs; eta by its critical cosine. */
-static lq_status critical_texels(const lq_table *table, const lq_piece *piece, lq_grid *grid,
-                                 lq_error *error) {
+/* mu from the critical cosine, from as far below as the smallest eta needs; eta by its critical cosine, on
+ * which a map that was asked for counts. */
+static lq_status critical_texels(const lq_table *table, const lq_pca_options *options, const lq_piece *piece,
+                                 lq_grid *grid, lq_error *error) {
     const int mu = lq_table_axis(table, "mu"), eta = lq_table_axis(table, "eta");
     double x[LQ_MAX_AXES] = {0.0};
     lq_status status = LQ_OK;
@@ -59,8 +65,9 @@ static lq_status critical_texels(const lq_table *table, const lq_piece *piece, l
         x[eta] = piece->min[eta];
         const double widest = lq_coordinate_at(axis, x);
         x[eta] = piece->max[eta];
-        status = is_mu ? other_texels(axis, "mu-critical", fmin(widest, 0.0), 1.0, count, error)
-                       : other_texels(axis, "critical", lq_coordinate_at(axis, x), widest, count, error);
+        status = is_mu ? other_texels(axis, "mu-critical", fmin(widest, 0.0), 1.0, count, 1.0, error)
+                       : other_texels(axis, "critical", lq_coordinate_at(axis, x), widest, count,
+                                      options->exponents[eta], error);
     }
     return status;
 }
@@ -88,7 +95,7 @@ static lq_status fill_grid(const lq_table *table, const lq_pca_options *options,
             grid->rest_count += status == LQ_OK;
         }
     if (status != LQ_OK || !options->critical) return status;
-    return critical_texels(table, piece, grid, error);
+    return critical_texels(table, options, piece, grid, error);
 }
 
 lq_status lq_piece_grid(const lq_table *table, const lq_pca_options *options, const lq_piece *piece,
