@@ -11,19 +11,20 @@ enum { CLI_COSINES_MAX = 256 };
 #define CLI_STACK_TOLERANCE_MAX 0.1
 
 /* Rows for the option list of a verb whose request has a cli_light `light`, for these modes of it. */
-#define CLI_LIGHT_OPTIONS(REQUEST, mask)                                                                     \
-    {CLI_MU,                                                                                                 \
-     "mu",                                                                                                   \
-     "MU,...",                                                                                               \
-     "cosines of incidence, in the medium the light comes from (default 1,0.6,0.15)",                        \
-     CLI_READ(REQUEST, light, cli_read_cosines),                                                             \
+#define CLI_LIGHT_OPTIONS(REQUEST, mask) CLI_MU_OPTION(REQUEST, mask), CLI_SIDE_OPTIONS(REQUEST, mask)
+#define CLI_MU_OPTION(REQUEST, mask)                                                                         \
+    {                                                                                                        \
+        CLI_MU, "mu", "MU,...",                                                                              \
+            "cosines of incidence, in the medium the light comes from (default 1,0.6,0.15)",                 \
+            CLI_READ(REQUEST, light, cli_read_cosines), .modes = (mask)                                      \
+    }
+#define CLI_SIDE_OPTIONS(REQUEST, mask)                                                                      \
+    {CLI_INTERFACES,                                                                                         \
+     "interfaces",                                                                                           \
+     "all|single",                                                                                           \
+     "orders of scattering at each interface; single: what is blocked after one is lost (default all)",      \
+     CLI_CHOICE(REQUEST, light.interfaces, cli_interfaces),                                                  \
      .modes = (mask)},                                                                                       \
-        {CLI_INTERFACES,                                                                                     \
-         "interfaces",                                                                                       \
-         "all|single",                                                                                       \
-         "orders of scattering at each interface; single: what is blocked after one is lost (default all)",  \
-         CLI_CHOICE(REQUEST, light.interfaces, cli_interfaces),                                              \
-         .modes = (mask)},                                                                                   \
     {                                                                                                        \
         CLI_FROM, "from", "above|below", "where the light comes from (default above)",                       \
             CLI_CHOICE(REQUEST, light.from, cli_sides), .modes = (mask)                                      \

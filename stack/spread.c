@@ -13,10 +13,14 @@ static double alpha_of(size_t i) {
     return root * root;
 }
 
+/* `along` the projected direction away from the light, and across it. */
+typedef struct direction {
+    double along, across, up;
+} direction;
+
 /* One visible normal of light from (sin, 0, mu), scaled by alpha to the hemisphere where visible normals are
- * a disc seen from the side (the density's invariance to stretching). The reflected direction's cosine and
- * its component across the plane of incidence. */
-static double reflect_at(double mu, double sine, double alpha, double radius, double angle, double *across) {
+ * a disc seen from the side (the density's invariance to stretching). The reflected direction. */
+static direction reflect_at(double mu, double sine, double alpha, double radius, double angle) {
     const double x = alpha * sine, length = sqrt(x * x + mu * mu), nx = x / length, nz = mu / length;
     const double across_disc = radius * sin(angle), straight = radius * cos(angle);
     /* Half of the disc is cut by the horizon of the stretched hemisphere, and so squeezed. */
@@ -26,8 +30,7 @@ static double reflect_at(double mu, double sine, double alpha, double radius, do
     const double hx = alpha * (-nz * up + nx * out), hy = alpha * across_disc;
     const double hz = fmax(nx * up + nz * out, 0.0), scale = 1.0 / sqrt(hx * hx + hy * hy + hz * hz);
     const double dot = (sine * hx + mu * hz) * scale;
-    *across = 2.0 * dot * hy * scale;
-    return 2.0 * dot * hz * scale - mu;
+    return (direction){sine - 2.0 * dot * hx * scale, 2.0 * dot * hy * scale, 2.0 * dot * hz * scale - mu};
 }
 
 static double lambda_of(double mu, double alpha) {
@@ -35,24 +38,31 @@ static double lambda_of(double mu, double alpha) {
     return 0.5 * (sqrt(1.0 + alpha * alpha * tangent) - 1.0);
 }
 
-double lq_spread_across(double mu, double alpha) {
+lq_stack_lobe lq_spread_lobe(double mu, double alpha) {
     const double pi = 3.14159265358979323846, from = fmax(mu, 1e-6),
                  sine = sqrt(fmax(1.0 - from * from, 0.0));
     const double shadow = 1.0 + lambda_of(from, alpha);
-    double energy = 0.0, sum = 0.0;
+    double energy = 0.0, sin2 = 0.0, mean = 0.0, across = 0.0;
     for (int r = 0; r < RINGS; r++)
         for (int s = 0; s < SECTORS; s++) {
-            double across;
             /* Rings crowd towards the edge, where the long tail of slopes is. */
             const double t = 1.0 - (r + 0.5) / RINGS, weight = t * t;
             const double radius = sqrt(1.0 - t * t * t), angle = pi * (s + 0.5) / SECTORS;
-            const double out = reflect_at(from, sine, alpha, radius, angle, &across);
-            if (out <= 0.0) continue;
-            const double passes = weight * shadow / (shadow + lambda_of(out, alpha));
+            const direction out = reflect_at(from, sine, alpha, radius, angle);
+            if (out.up <= 0.0) continue;
+            const double passes = weight * shadow / (shadow + lambda_of(out.up, alpha));
             energy += passes;
-            sum += passes * across * across;
+            sin2 += passes * (out.along * out.along + out.across * out.across);
+            mean += passes * out.along;
+            across += passes * out.across * out.across;
         }
-    return energy > 0.0 ? sum / energy : 0.0;
+    if (!(energy > 0.0)) return (lq_stack_lobe){.energy = 1.0};
+    if (sine == 0.0) mean = 0.0; /* but for rounding */
+    return (lq_stack_lobe){1.0, sin2 / energy, mean / energy, across / energy};
+}
+
+double lq_spread_across(double mu, double alpha) {
+    return lq_spread_lobe(mu, alpha).across;
 }
 
 lq_status lq_spread_make(lq_spread *spread, const double *mu, size_t count, lq_error *error) {

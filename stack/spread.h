@@ -10,6 +10,8 @@
 
 /* E[sin^2 theta sin^2 phi] of the lobe, light arriving at cosine mu; 0 <= alpha <= 1. To some 1e-4. */
 double lq_spread_across(double mu, double alpha);
+/* That, E[sin^2 theta] and E[sin theta cos phi], positive away from the light; of energy 1. */
+lq_stack_lobe lq_spread_lobe(double mu, double alpha);
 
 /* The same turned round, for a list of cosines. */
 typedef struct lq_spread {

@@ -152,6 +152,8 @@ certificate='certificate on table parts junit report'
 light='mu interfaces from'
 idle bench csv svg full scattering masking stack allow-plugin -- --report /proc/x
 idle bench svg points report ndf scattering masking -- stack --csv /proc/x
+idle stack interfaces from paths tolerance -- files/empty --model b18-forward
+idle stack variant mapping -- files/empty
 idle validate against layout kind axes diagnose samples points seed budget $certificate \
     scattering masking tolerance $light -- hard-cases
 idle validate against layout kind axes diagnose points budget $certificate ndf scattering masking -- \

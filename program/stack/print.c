@@ -9,7 +9,9 @@
 #include "program/output.h"
 #include "program/verb.h"
 
-enum { NUMBER_SIZE = 32 };
+bool stack_is_opaque(const lq_stack *stack) {
+    return stack->layers[stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
+}
 
 static size_t paths_of(const stack_result *r) {
     return r->query->paths ? r->query->paths : 1;
@@ -28,22 +30,28 @@ static void print_csv_moments(const lq_stack_lobe *lobe) {
     else printf(",,,");
 }
 
-static void print_csv_row(const stack_result *r, size_t m, int channel, size_t path) {
-    const lq_stack_light *light = light_at(r, m, channel, path);
-    const bool opaque = r->stack->layers[r->stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
-    printf("%.15g,%d,%.9g,", r->query->mu[m], channel, light->reflected.energy);
+const char stack_csv_columns[] =
+    "mu,channel,reflected,transmitted,sin2,mean,across,transmitted_sin2,transmitted_mean,transmitted_across,"
+    "error";
+
+void stack_print_csv_numbers(double mu, int channel, const lq_stack_light *light, bool opaque) {
+    printf("%.15g,%d,%.9g,", mu, channel, light->reflected.energy);
     if (!opaque) printf("%.9g", light->transmitted.energy);
     print_csv_moments(&light->reflected);
     print_csv_moments(&light->transmitted);
-    printf(",%.2g", light->error);
+    printf(",");
+}
+
+static void print_csv_row(const stack_result *r, size_t m, int channel, size_t path) {
+    const lq_stack_light *light = light_at(r, m, channel, path);
+    stack_print_csv_numbers(r->query->mu[m], channel, light, stack_is_opaque(r->stack));
+    printf("%.2g", light->error);
     if (r->query->paths) printf(",%zu", path + 1);
     printf("\n");
 }
 
 void stack_print_csv(const stack_result *r) {
-    printf("mu,channel,reflected,transmitted,sin2,mean,across,transmitted_sin2,transmitted_mean,"
-           "transmitted_across,error%s\n",
-           r->query->paths ? ",path" : "");
+    printf("%s%s\n", stack_csv_columns, r->query->paths ? ",path" : "");
     for (size_t m = 0; m < r->query->mu_count; m++)
         for (int c = 0; c < r->channels; c++)
             for (size_t p = 0; p < paths_of(r); p++) print_csv_row(r, m, c, p);
@@ -60,7 +68,7 @@ static void print_text_lobe(const lq_stack_lobe *lobe) {
 }
 
 void stack_print_text(const stack_result *r) {
-    const bool opaque = r->stack->layers[r->stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
+    const bool opaque = stack_is_opaque(r->stack);
     const bool rgb = r->channels > 1, paths = r->query->paths;
     printf("%-8s%s%s  %9s %8s %8s %8s", "mu", rgb ? " channel" : "", paths ? " path" : "", "reflected",
            "sin2", "mean", "across");
@@ -83,7 +91,7 @@ void stack_print_text(const stack_result *r) {
  *                                         JSON
  * ====================================================================================== */
 
-static json_t *lobe_json(const lq_stack_lobe *lobe) {
+json_t *stack_lobe_json(const lq_stack_lobe *lobe) {
     if (!(lobe->energy > 0.0)) return json_pack("{s:f}", "energy", 0.0);
     return json_pack("{s:f, s:f, s:f, s:f}", "energy", lobe->energy, "sin2", lobe->sin2, "mean", lobe->mean,
                      "across", lobe->across);
@@ -91,10 +99,10 @@ static json_t *lobe_json(const lq_stack_lobe *lobe) {
 
 static json_t *row_json(const stack_result *r, size_t m, int channel, size_t path) {
     const lq_stack_light *light = light_at(r, m, channel, path);
-    const bool opaque = r->stack->layers[r->stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
+    const bool opaque = stack_is_opaque(r->stack);
     json_t *row = json_pack("{s:f, s:i, s:o, s:f}", "mu", r->query->mu[m], "channel", channel, "reflected",
-                            lobe_json(&light->reflected), "error", light->error);
-    if (!opaque) lq_json_set(&row, "transmitted", lobe_json(&light->transmitted));
+                            stack_lobe_json(&light->reflected), "error", light->error);
+    if (!opaque) lq_json_set(&row, "transmitted", stack_lobe_json(&light->transmitted));
     if (r->query->paths) lq_json_set(&row, "path", json_integer((json_int_t)path + 1));
     return row;
 }

@@ -1,4 +1,4 @@
-/* stack.c - `lacquer stack`: what a layered material does to light, exactly. */
+/* stack.c - `lacquer stack`: what a layered material does to light, exactly or by a model. */
 #include "program/stack/stack.h"
 
 #include <stdlib.h>
@@ -11,7 +11,16 @@
 #include "program/settings.h"
 #include "program/verb.h"
 
-enum { OPTION_FORMAT = 256, OPTION_PATHS, OPTION_TOLERANCE, OPTION_TRUST };
+enum {
+    OPTION_FORMAT = 256,
+    OPTION_PATHS,
+    OPTION_TOLERANCE,
+    OPTION_TRUST,
+    OPTION_MODEL,
+    OPTION_VARIANT,
+    OPTION_MAPPING
+};
+enum { EXACT = 1, MODEL = 2 };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 
 typedef struct stack_request {
@@ -22,18 +31,30 @@ typedef struct stack_request {
     size_t threads;
     double tolerance;
     bool trusted;
+    int model, variant, mapping;
 } stack_request;
 
 static const char *const formats[] = {"text", "csv", "json", NULL};
+static const char *const models[] = {"b18-forward", NULL};
+static const char *const variants[] = {"paper", "released", NULL}; /* as lq_model_variant */
+static const char *const mappings[] = {"exact", "b18", NULL};      /* as lq_model_f */
 
 static const cli_option options[] = {
-    CLI_LIGHT_OPTIONS(stack_request, 0),
+    CLI_MU_OPTION(stack_request, 0),
+    CLI_SIDE_OPTIONS(stack_request, EXACT),
+    {OPTION_MODEL, "model", "b18-forward", "a model's lobes, one an interface, instead of what is exact",
+     CLI_CHOICE(stack_request, model, models)},
+    {OPTION_VARIANT, "variant", "paper|released",
+     "B18 as printed, or as its code was released (default paper)",
+     CLI_CHOICE(stack_request, variant, variants), .modes = MODEL},
+    {OPTION_MAPPING, "mapping", "exact|b18", "f of roughness: computed, or B18's fit of it (default exact)",
+     CLI_CHOICE(stack_request, mapping, mappings), .modes = MODEL},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
-     CLI_FLAG(stack_request, paths)},
+     CLI_FLAG(stack_request, paths), .modes = EXACT},
     {OPTION_TOLERANCE, "tolerance", "T", "absolute error of every number (default 1e-4)",
-     CLI_NUMBER(stack_request, tolerance, CLI_STACK_TOLERANCE_MIN, CLI_STACK_TOLERANCE_MAX)},
+     CLI_NUMBER(stack_request, tolerance, CLI_STACK_TOLERANCE_MIN, CLI_STACK_TOLERANCE_MAX), .modes = EXACT},
     {OPTION_TRUST, "allow-plugin", NULL, "open the NDF files and run the plugins that the stack names",
      CLI_FLAG(stack_request, trusted)},
     CLI_THREADS_OPTION(stack_request, 0),
@@ -83,17 +104,54 @@ static int solve(const stack_request *request, const lq_stack *stack) {
     return code;
 }
 
+static int print_model(const stack_request *request, const model_result *result) {
+    if (request->format == FORMAT_JSON) return model_print_json(result);
+    if (request->format == FORMAT_CSV) model_print_csv(result);
+    else model_print_text(result);
+    return CLI_DONE;
+}
+
+static int solve_model(const stack_request *request, const lq_stack *stack) {
+    const lq_model_query query = {.mu = request->light.mu,
+                                  .mu_count = request->light.count,
+                                  .variant = (lq_model_variant)request->variant,
+                                  .f = (lq_model_f)request->mapping,
+                                  .threads = (int)request->threads};
+    const int channels = lq_stack_channels(stack);
+    lq_error error = {""};
+    lq_model_lobe *lobes =
+        calloc(query.mu_count * (size_t)channels * lq_model_lobe_count(stack), sizeof *lobes);
+    if (!lobes) return cli_fail("out of memory");
+    cli_progress bar;
+    cli_progress_begin(&bar, "model");
+    const lq_status status = lq_model_solve(stack, &query, lobes, &bar.progress, &error);
+    cli_progress_end(&bar);
+    const model_result result = {.stack = stack,
+                                 .query = &query,
+                                 .model = models[request->model],
+                                 .variant = variants[request->variant],
+                                 .mapping = mappings[request->mapping],
+                                 .channels = channels,
+                                 .lobes = lobes};
+    const int code = status == LQ_OK ? print_model(request, &result) : cli_fail_status(status, &error);
+    free(lobes);
+    return code;
+}
+
 static int run(int argc, char **argv) {
-    stack_request request = {.light = cli_light_default()};
+    stack_request request = {.light = cli_light_default(), .model = -1};
     cli_given given;
     lq_error error = {""};
     lq_stack *stack = NULL;
     if (!cli_parse(&cli_verb_stack, argc, argv, &request, take_word, &given)) return CLI_FAILED;
+    const bool exact = request.model < 0;
+    if (!cli_suits(&given, exact ? EXACT : MODEL, exact ? "without --model" : "with --model"))
+        return CLI_FAILED;
     if (!request.path) return cli_fail("no stack; usage: lacquer stack FILE.json [options]");
     const lq_status status =
         lq_stack_read(&stack, request.path, request.trusted ? LQ_STACK_TRUSTED : 0, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    const int code = solve(&request, stack);
+    const int code = exact ? solve(&request, stack) : solve_model(&request, stack);
     lq_stack_free(stack);
     return code;
 }
@@ -106,19 +164,25 @@ static void print_notes(FILE *out) {
         "from the light) and across = E[sin^2 theta sin^2 phi]. `error` is an estimate for every number of\n"
         "its line, never meant to be too small. CSV leaves a field empty where there is no such light.\n"
         "--paths goes on until no more than a hundredth of the light is left; its last line holds that.\n"
+        "--model prints the lobes of the statistical model of Belcour 2018 instead, a line each: energy, "
+        "mean\n"
+        "(sin theta of its direction), variance (f of its roughness) and GGX roughness, by the layer that "
+        "adds\n"
+        "it; CSV has the same columns as without it, `error` empty.\n"
         "FILE.json describes layers from the top; see docs/stacks.md.\n"
         "Exit 2: printed, but some estimate is above the tolerance.\n\n");
 }
 
 const cli_verb cli_verb_stack = {
     .name = "stack",
-    .summary = "energies and spread of a layered material, without noise",
+    .summary = "energies and spread of a layered material, without noise, or a model's lobes",
     .usage = "FILE.json [options]",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
     .examples = "lacquer stack recipes/stacks/frosted-metal.json --mu 1,0.6,0.15\n"
                 "lacquer stack recipes/stacks/frosted-metal.json --paths --format csv\n"
-                "lacquer stack recipes/stacks/slab.json --from below --tolerance 1e-6",
+                "lacquer stack recipes/stacks/slab.json --from below --tolerance 1e-6\n"
+                "lacquer stack recipes/stacks/frosted-metal.json --model b18-forward",
     .run = run,
 };

@@ -2,7 +2,8 @@
 #ifndef LACQUER_PROGRAM_STACK_STACK_H
 #define LACQUER_PROGRAM_STACK_STACK_H
 
-#include "lacquer.h"
+#include "stack/model.h"
+#include "system/json.h"
 
 /* Light of one query, as lq_stack_solve gives it. */
 typedef struct stack_result {
@@ -16,5 +17,28 @@ void stack_print_text(const stack_result *result);
 void stack_print_csv(const stack_result *result);
 /* An exit code: memory may run out. */
 int stack_print_json(const stack_result *result);
+
+/* ---- --model ---- */
+
+/* Lobes of one query, as lq_model_solve gives them. */
+typedef struct model_result {
+    const lq_stack *stack;
+    const lq_model_query *query;
+    const char *model, *variant, *mapping; /* as the options name them */
+    int channels;
+    const lq_model_lobe *lobes;
+} model_result;
+
+void model_print_text(const model_result *result);
+void model_print_csv(const model_result *result);
+int model_print_json(const model_result *result);
+
+/* ---- for both ---- */
+
+bool stack_is_opaque(const lq_stack *stack);
+/* Up to the last of the columns that both have, without its line break: its `error` is left to the caller. */
+void stack_print_csv_numbers(double mu, int channel, const lq_stack_light *light, bool opaque);
+json_t *stack_lobe_json(const lq_stack_lobe *lobe);
+extern const char stack_csv_columns[];
 
 #endif

@@ -1,0 +1,200 @@
+/* model.c - the layers of a stack, from the top, through B18's adding. */
+#include "stack/model.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "stack/description.h"
+#include "stack/spread.h"
+#include "system/parallel.h"
+#include "system/status.h"
+
+size_t lq_model_lobe_count(const lq_stack *stack) {
+    return stack->layer_count + 1;
+}
+
+/* ======================================================================================
+ *                                     What is refused
+ * ====================================================================================== */
+
+static lq_status check_layer(const lq_stack *stack, size_t i, lq_error *error) {
+    const lq_layer *layer = &stack->layers[i];
+    if (layer->type == LQ_LAYER_LAMBERTIAN)
+        return i <= 1
+                   ? LQ_OK
+                   : lq_fail(error, LQ_BAD_INPUT,
+                             "a lambertian base under %zu coats; accepted in a model: one coat, or none", i);
+    if (strcmp(layer->ndf, "ggx") == 0) return LQ_OK;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "layer %zu has the NDF %.60s; accepted: ggx, as the lobes of the model", i + 1,
+                   layer->ndf);
+}
+
+static lq_status check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
+    const lq_stack_query light = {.mu = query->mu, .mu_count = query->mu_count};
+    lq_status status = lq_stack_solvable(stack, &light, error);
+    for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++) status = check_layer(stack, i, error);
+    return status;
+}
+
+/* ======================================================================================
+ *                                  One cosine and channel
+ * ====================================================================================== */
+
+typedef struct passage {
+    const lq_stack *stack;
+    const lq_model_tables *tables;
+    int channel;
+    double mu; /* of incidence */
+    lq_model_ray ray;
+    lq_model_sum sum;
+    double above; /* index over the medium that `ray` is in */
+} passage;
+
+static double sine_of(double cosine) {
+    return lq_sine(fmin(fmax(cosine, 0.0), 1.0));
+}
+
+/* A lobe in the direction of a mirror, for all light that was inside comes back by the way it came. */
+static lq_model_lobe mirrored(const passage *p, lq_flow flow) {
+    if (!(flow.energy > 0.0)) return (lq_model_lobe){0};
+    return (lq_model_lobe){flow.energy, sine_of(p->mu), flow.variance,
+                           lq_model_roughness(p->tables->mapping, flow.variance)};
+}
+
+static lq_status interface_of(passage *p, const lq_layer *layer, double looked_up, lq_model_interface *i,
+                              lq_error *error) {
+    const int c = p->channel;
+    const double alpha = layer->alpha_x.value[c], n = layer->n.value[c];
+    return layer->type == LQ_LAYER_DIELECTRIC
+               ? lq_model_dielectric(p->tables, &p->ray, n, alpha, looked_up, i, error)
+               : lq_model_conductor(p->tables, p->ray, n, layer->kappa.value[c], alpha, looked_up, i, error);
+}
+
+/* The medium below interface `at`, for the light of the one below that: first what is totally reflected at
+ * its upper side, which then crosses like all else. */
+static lq_status go_down(passage *p, size_t at, double looked_up, lq_error *error) {
+    double pass;
+    const double tau = lq_medium_transmittance(&p->stack->layers[at].medium, p->channel);
+    const lq_status status = lq_model_pass(p->ray, p->above, looked_up, &pass, error);
+    if (status != LQ_OK) return status;
+    lq_model_reflect_back(&p->sum, pass);
+    lq_model_cross(&p->sum, pow(tau, 1.0 / p->ray.cosine));
+    return LQ_OK;
+}
+
+static lq_status add_layer(passage *p, size_t at, lq_model_lobe *lobe, lq_error *error) {
+    const lq_layer *layer = &p->stack->layers[at];
+    const double looked_up =
+        lq_model_lookup_alpha(p->tables, p->sum.t0i.variance, layer->alpha_x.value[p->channel]);
+    const double here = p->ray.index;
+    lq_model_interface interface;
+    lq_status status = at > 0 ? go_down(p, at - 1, looked_up, error) : LQ_OK;
+    if (status == LQ_OK) status = interface_of(p, layer, looked_up, &interface, error);
+    if (status != LQ_OK) return status;
+    *lobe = mirrored(p, lq_model_add(&p->sum, &interface));
+    p->above = here;
+    return LQ_OK;
+}
+
+static lq_status add_diffuse(passage *p, size_t at, lq_model_lobe *lobe, lq_error *error) {
+    const lq_layer *base = &p->stack->layers[at], *top = &p->stack->layers[0];
+    const int c = p->channel;
+    lq_model_coat coat = {.mu = p->mu, .eta = 1.0, .tau = 1.0, .rho = base->rho.value[c]};
+    if (at > 0) {
+        coat.eta = top->n.value[c];
+        coat.alpha = top->alpha_x.value[c];
+        coat.tau = lq_medium_transmittance(&top->medium, c);
+    }
+    const lq_status status = lq_model_diffuse(&coat, &lobe->energy, &lobe->alpha, error);
+    lobe->variance = lq_model_variance(p->tables->mapping, lobe->alpha);
+    return status;
+}
+
+/* What is left below the last interface, across its medium. */
+static void go_through(passage *p, size_t last, lq_model_lobe *lobe) {
+    const lq_layer *layer = &p->stack->layers[last];
+    if (layer->type != LQ_LAYER_DIELECTRIC || !(p->sum.t0i.energy > 0.0)) return;
+    lq_model_cross(&p->sum, pow(lq_medium_transmittance(&layer->medium, p->channel), 1.0 / p->ray.cosine));
+    *lobe = mirrored(p, p->sum.t0i);
+    lobe->mean = lobe->energy > 0.0 ? sine_of(p->ray.cosine) : 0.0;
+}
+
+static lq_status pass_down(passage *p, lq_model_lobe *lobes, lq_error *error) {
+    const size_t count = p->stack->layer_count;
+    memset(lobes, 0, (count + 1) * sizeof *lobes);
+    for (size_t i = 0; i < count; i++) {
+        const bool diffuse = p->stack->layers[i].type == LQ_LAYER_LAMBERTIAN;
+        if (!diffuse && p->ray.cosine == 0.0) break;
+        const lq_status status =
+            diffuse ? add_diffuse(p, i, &lobes[i], error) : add_layer(p, i, &lobes[i], error);
+        if (status != LQ_OK) return status;
+    }
+    go_through(p, count - 1, &lobes[count]);
+    return LQ_OK;
+}
+
+/* ======================================================================================
+ *                                          All
+ * ====================================================================================== */
+
+typedef struct job {
+    const lq_stack *stack;
+    const lq_model_query *query;
+    lq_model_tables tables;
+    lq_model_lobe *lobes;
+} job;
+
+/* Tables take light along the horizon for light just above it. */
+static const double LEAST_MU = 1e-6;
+
+static lq_status turn(void *user, size_t index, int thread, lq_error *error) {
+    (void)thread;
+    const job *j = user;
+    const size_t channels = (size_t)lq_stack_channels(j->stack);
+    const double mu = fmax(j->query->mu[index / channels], LEAST_MU);
+    passage p = {.stack = j->stack,
+                 .tables = &j->tables,
+                 .channel = (int)(index % channels),
+                 .mu = mu,
+                 .ray = {mu, 1.0},
+                 .sum = lq_model_nothing(),
+                 .above = 1.0};
+    return pass_down(&p, j->lobes + index * lq_model_lobe_count(j->stack), error);
+}
+
+lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
+                         const lq_progress *progress, lq_error *error) {
+    lq_model_mapping mapping;
+    const job j = {stack, query, {query->variant, &mapping}, lobes};
+    lq_status status = check(stack, query, error);
+    if (status == LQ_OK) status = lq_model_mapping_make(&mapping, query->f, error);
+    if (status != LQ_OK) return status;
+    return lq_parallel(query->mu_count * (size_t)lq_stack_channels(stack), query->threads, turn, (void *)&j,
+                       progress, error);
+}
+
+/* ======================================================================================
+ *                                     As light of a stack
+ * ====================================================================================== */
+
+static void add_moments(lq_stack_lobe *sum, const lq_model_lobe *lobe) {
+    if (!(lobe->energy > 0.0)) return;
+    const lq_stack_lobe one = lq_spread_lobe(lq_sine(fmin(lobe->mean, 1.0)), lobe->alpha);
+    sum->energy += lobe->energy;
+    sum->sin2 += lobe->energy * one.sin2;
+    sum->mean += lobe->energy * one.mean;
+    sum->across += lobe->energy * one.across;
+}
+
+static lq_stack_lobe normalised(lq_stack_lobe sum) {
+    if (!(sum.energy > 0.0)) return (lq_stack_lobe){0};
+    return (lq_stack_lobe){sum.energy, sum.sin2 / sum.energy, sum.mean / sum.energy, sum.across / sum.energy};
+}
+
+lq_stack_light lq_model_light(const lq_stack *stack, const lq_model_lobe *lobes) {
+    lq_stack_lobe reflected = {0}, through = {0};
+    for (size_t k = 0; k < stack->layer_count; k++) add_moments(&reflected, &lobes[k]);
+    add_moments(&through, &lobes[stack->layer_count]);
+    return (lq_stack_light){.reflected = normalised(reflected), .transmitted = normalised(through)};
+}

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# `lacquer stack --model` as scripts see it: the columns of the exact stack, a line a lobe, and what is refused.
+set -euo pipefail
+: "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?root of the sources}"
+. "$(dirname "$0")/expect.sh"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+stacks=$LACQUER_SOURCE/recipes/stacks
+metal=$stacks/frosted-metal.json slab=$stacks/slab.json
+model='--model b18-forward'
+number='[0-9.e-]+'
+
+# ------------------------------------------------------------------------------------------- formats
+run 0 stack "$slab" --mu 0.6 --format csv
+head -n 1 out >header
+run 0 stack "$slab" $model --mu 1,0.6 --format csv
+cmp -s header <(head -n 1 out) || fail "CSV has other columns than the exact stack: $(head -n 1 out)"
+[ "$(wc -l <out)" -eq 3 ] || fail "not a row a cosine: $(cat out)"
+says "^0\.6,0(,$number){8},$"
+run 0 stack "$metal" $model --mu 0.6 --format csv
+says "^0\.6,0,0\.903$number,(,$number){3},,,,$"
+run 0 stack "$slab" $model --mu 0.6
+[ "$(wc -l <out)" -eq 4 ] || fail "not a line for each of three lobes: $(cat out)"
+says '^0\.6 +2( +[0-9.]+){4}$'
+says '^0\.6 +through( +[0-9.]+){4}$'
+run 0 stack "$metal" $model --mu 0.6 --format json --variant released --mapping b18
+says '"variant": "released"'
+says '"mapping": "b18"'
+[ "$(grep -c '"roughness"' out)" -eq 2 ] || fail "not two lobes: $(cat out)"
+
+# ------------------------------------------------------------------------------------------- refused
+refused "b18-symmetric.*b18-forward" stack "$slab" --model b18-symmetric
+refused 'lambertian base under 2 coats' stack "$stacks/varnished-base.json" $model
+refused '--paths has no effect with --model' stack "$slab" $model --paths
+refused '--mapping has no effect without --model' stack "$slab" --mapping b18
+echo '{"layers": [{"conductor": {"n": 1, "kappa": 1, "alpha": {"x": 0.3, "y": 0.1}}}]}' >a.json
+refused 'layer 1 is anisotropic' stack a.json $model
+
+exit $((failures > 0))
