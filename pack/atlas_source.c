@@ -29,8 +29,8 @@ static const char c_types[] =
     "static inline float lacquer_mix(float a, float b, float t) { return a + (b - a) * t; }\n\n";
 
 static const char *const heads[LQ_LANGUAGES] = {
-    [LQ_GLSL] = "/* In WebGL2 after #version 300 es. `atlas` is atlas.*, linear filtering, clamp to edge, no "
-                "mip levels. */\n",
+    [LQ_GLSL] =
+        "/* In WebGL2 after #version 300 es. `atlas`: linear filtering, clamp to edge, no mip levels. */\n",
     [LQ_HLSL] =
         "/* `atlas` is atlas.*, `linear_clamp` a sampler with linear filtering, clamp, no mip levels. */\n",
     [LQ_C] = "/* C99 and C++. `atlas` is the array of the pack's C header, lacquer_atlas_texels. */\n",

@@ -10,7 +10,7 @@ static const double cosines[] = {0.9, 0.5, 0.2, 0.05};
 enum { COSINES = 4 };
 
 static lq_material describe(const char *text, lq_stack **stack) {
-    lq_material m;
+    lq_material m = {0};
     lq_error error = {""};
     if (lq_stack_parse(stack, text, "a.json", LQ_STACK_RANGES, &error) != LQ_OK ||
         lq_material_describe(&m, *stack, &error) != LQ_OK)
