@@ -282,7 +282,7 @@ static void test_hard_cases(void **state) {
     for (size_t i = 0; i < sizeof stacks / sizeof *stacks; i++)
         for (int v = 0; v < 8; v++) {
             lq_model_lobe lobes[LOBES];
-            lobes_at(stacks[i], mu[v / 2], v % 2, v > 0 ? LQ_MODEL_F_B18 : LQ_MODEL_F_EXACT, lobes);
+            lobes_at(stacks[i], mu[v / 2], (lq_model_variant)(v % 2), v > 0 ? LQ_MODEL_F_B18 : LQ_MODEL_F_EXACT, lobes);
             lq_stack *stack = parse(stacks[i]);
             double sum = 0.0;
             for (size_t k = 0; k < lq_model_lobe_count(stack); k++) {
