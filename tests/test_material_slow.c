@@ -81,16 +81,15 @@ static void test_any_albedo(void **state) {
                      LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": %g}, \"medium\": {\"tau\": [0.9, 0.7, "
                             "0.4]}},{\"lambertian\": {\"rho\": %g}}"),
                      alphas[a], rhos[r]);
-            for (int i = 0; i < COSINES; i++) {
-                lq_stack *exact = parse(text);
-                const lq_stack_query query = {.mu = &cosines[i], .mu_count = 1, .tolerance = 1e-4};
-                lq_stack_light light[LQ_STACK_CHANNELS];
-                assert_int_equal(lq_stack_solve(exact, &query, light, NULL, NULL), LQ_OK);
-                for (int c = 0; c < LQ_STACK_CHANNELS; c++)
-                    assert_near(energy(&m, n + i * LQ_MATERIAL_NUMBERS, c, rhos[r]),
-                                light[c].reflected.energy, 1e-4);
-                lq_stack_free(exact);
-            }
+            lq_stack *exact = parse(text);
+            const lq_stack_query query = {.mu = cosines, .mu_count = COSINES, .tolerance = 1e-4};
+            lq_stack_light light[COSINES * LQ_STACK_CHANNELS];
+            assert_int_equal(lq_stack_solve(exact, &query, light, NULL, NULL), LQ_OK);
+            for (int i = 0; i < COSINES * LQ_STACK_CHANNELS; i++)
+                assert_near(energy(&m, n + i / LQ_STACK_CHANNELS * LQ_MATERIAL_NUMBERS, i % LQ_STACK_CHANNELS,
+                                   rhos[r]),
+                            light[i].reflected.energy, 1e-4);
+            lq_stack_free(exact);
         }
     lq_stack_free(stack);
 }
