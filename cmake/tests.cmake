@@ -1,5 +1,6 @@
 # Tests: each tests/test_*.c is one cmocka program, each tests/test_*.sh one bash script. Exit 77 is
-# a skip. Names that end in _slow get the label "slow", which the asan preset leaves out.
+# a skip. Names that end in _slow get the label "slow", which the asan preset leaves out; those that end in _long
+# the label "long" as well, which only the preset of that name runs: minutes, beside what others test in seconds.
 pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
 
 # Tests run side by side: threads that spin while they wait would take the cores from each other.
@@ -13,12 +14,17 @@ function(lacquer_test_properties name)
                                           ENVIRONMENT "${test_environment}")
   if(name MATCHES "_slow$")
     set_tests_properties(${name} PROPERTIES LABELS slow)
+  elseif(name MATCHES "_long$")
+    set_tests_properties(${name} PROPERTIES LABELS "slow;long" TIMEOUT 900)
   endif()
 endfunction()
 
 file(GLOB test_programs CONFIGURE_DEPENDS "tests/test_*.c")
 foreach(source IN LISTS test_programs)
   get_filename_component(name ${source} NAME_WE)
+  if(LACQUER_QUICK_TESTS AND name MATCHES "_(slow|long)$")
+    continue() # the preset runs none of these
+  endif()
   add_executable(${name} ${source})
   lacquer_warnings(${name})
   target_compile_definitions(${name} PRIVATE ${system_interfaces})
@@ -33,6 +39,9 @@ endforeach()
 pkg_check_modules(EGL IMPORTED_TARGET egl glesv2)
 if(EGL_FOUND)
   foreach(name test_pack_gl test_pack_gl_shipped test_scene_decode_slow)
+    if(NOT TARGET ${name})
+      continue()
+    endif()
     target_link_libraries(${name} PRIVATE PkgConfig::EGL ${CMAKE_DL_LIBS})
     target_compile_definitions(${name} PRIVATE LACQUER_EGL)
   endforeach()

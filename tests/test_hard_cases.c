@@ -1,4 +1,4 @@
-/* Each sort of damage is caught by the hard cases where it was done. (test_hard_cases_slow.sh runs them on
+/* Each sort of damage is caught by the hard cases where it was done. (test_hard_cases_long.sh runs them on
  * the solver.) */
 #include "tests/expect.h"
 
