@@ -79,8 +79,10 @@ void lq_packing_free(lq_packing *p) {
         lq_factored_textures_free(&p->tables[i].factors);
         lq_factored_free(p->tables[i].factored);
     }
-    for (size_t i = 0; p->materials && i < p->recipe->material_count; i++)
+    for (size_t i = 0; p->materials && i < p->recipe->material_count; i++) {
         lq_lobes_free(&p->materials[i].lobes);
+        lq_lobes_free(&p->materials[i].reference);
+    }
     lq_atlas_free(&p->atlas);
     free(p->tables);
     free(p->materials);

@@ -60,7 +60,9 @@ static void make_pack(const char *atlas) {
     snprintf(command, sizeof command, "%s pack %s/recipe.json -o %s/pack --cache %s/cache >/dev/null",
              program ? program : "build/release/lacquer", folder, folder, folder);
     assert_int_equal(system(command), 0);
-    shipped = strdup(at("pack"));
+    static char made[1024];
+    snprintf(made, sizeof made, "%s", at("pack"));
+    shipped = made;
 }
 
 static char *text_of(const char *name) {
