@@ -135,14 +135,21 @@ static double weight_of(const lq_table *samples, size_t sample, double from) {
     return promised ? 1.0 : 0.01;
 }
 
-/* Texels stay between the smallest and the largest sample: a fit may overshoot what is physical. */
-static void keep_range(const fit *f, float *texels) {
+/* The fit into the texels, between the smallest and the largest sample: it may overshoot what is physical.
+ * The largest change. */
+static double take(const fit *f, float *texels) {
     float low = INFINITY, high = -INFINITY;
+    double moved = 0.0;
     for (size_t s = 0; s < f->samples; s++) {
         low = fminf(low, f->wanted[s]);
         high = fmaxf(high, f->wanted[s]);
     }
-    for (size_t i = 0; i < f->texels; i++) texels[i] = fminf(fmaxf((float)f->x[i], low), high);
+    for (size_t i = 0; i < f->texels; i++) {
+        const float fitted = fminf(fmaxf((float)f->x[i], low), high);
+        moved = fmax(moved, fabs((double)fitted - (double)texels[i]));
+        texels[i] = fitted;
+    }
+    return moved;
 }
 
 static bool allocate(fit *f) {
@@ -159,7 +166,9 @@ static void release(fit *f) {
     free(f->taps);
 }
 
-lq_status lq_fit_texels(lq_table *table, const lq_table *samples, double from, lq_error *error) {
+lq_status lq_fit_texels(lq_table *table, const lq_table *samples, double from, double *moved,
+                        lq_error *error) {
+    *moved = 0.0;
     fit f = {.texels = lq_table_entries(table), .samples = lq_table_entries(samples)};
     lq_status status =
         allocate(&f) ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu samples", f.samples);
@@ -171,7 +180,7 @@ lq_status lq_fit_texels(lq_table *table, const lq_table *samples, double from, l
         f.wanted = samples->channels[c];
         for (size_t i = 0; i < f.texels; i++) f.x[i] = (double)table->channels[c][i];
         solve(&f);
-        keep_range(&f, table->channels[c]);
+        *moved = fmax(*moved, take(&f, table->channels[c]));
     }
     release(&f);
     return status;

@@ -14,7 +14,8 @@ lq_status lq_fit_axes(const lq_axis *axes, int axis_count, lq_axis *finer, lq_er
 
 /* Replace the values of `table`, at its nodes, by the least-squares fit to `samples`, the exact values on
  * lq_fit_axes of its axes. Where mu or alpha is below `from`, no error is promised and a sample weighs a
- * hundredth. */
-lq_status lq_fit_texels(lq_table *table, const lq_table *samples, double from, lq_error *error);
+ * hundredth. `moved` gets the largest change of a value. */
+lq_status lq_fit_texels(lq_table *table, const lq_table *samples, double from, double *moved,
+                        lq_error *error);
 
 #endif

@@ -6,11 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "system/number.h"
+#include "pack/measure.h"
 #include "system/status.h"
-#include "tables/axis.h"
 
-enum { RANGE_SAMPLES = 65, SIZES = 12, MAPS = 3, FILTER_BITS = 8 };
+enum { RANGE_SAMPLES = 65, SIZES = 12, MAPS = 3 };
 
 /* What a fit is measured against: samples between texels, and texels' weights at them. */
 typedef struct samples {
@@ -145,25 +144,12 @@ typedef struct taps {
     double *above; /* weight of the upper one */
 } taps;
 
-static double position_of(const lq_axis *axis, double value, int bits) {
-    const double t = fmin(fmax((value - axis->min) / (axis->max - axis->min), 0.0), 1.0);
-    const double position = pow(t, 1.0 / axis->exponent) * (double)(axis->size - 1);
-    return bits > 0 ? ldexp(nearbyint(ldexp(position, bits)), -bits) : position;
-}
-
-static void locate(const lq_axis *axis, double value, int bits, size_t *below, double *above) {
-    const double position = position_of(axis, value, bits);
-    const size_t last = axis->size > 1 ? axis->size - 2 : 0;
-    *below = (size_t)position < last ? (size_t)position : last;
-    *above = axis->size > 1 ? position - (double)*below : 0.0;
-}
-
 static bool make_taps(taps *t, const lq_axis *axis, const double *at, size_t count, int bits) {
     *t = (taps){axis ? axis->size : 1, count, malloc(count * sizeof(size_t)), calloc(count, sizeof(double))};
     if (!t->below || !t->above) return false;
     for (size_t i = 0; i < count; i++) {
         t->below[i] = 0;
-        if (axis) locate(axis, at[i], bits, &t->below[i], &t->above[i]);
+        if (axis) t->below[i] = lq_texel_below(axis, at[i], bits, &t->above[i]);
     }
     return true;
 }
@@ -373,12 +359,12 @@ static double judge(trial *t, double p99, double *max) {
  *                                        Search
  * ====================================================================================== */
 
+/* The maps of an axis that are tried. */
 static lq_status set_axis(lq_axis *axis, const char *name, double min, double max, size_t size, int map,
                           lq_error *error) {
-    static const char *const maps[MAPS] = {"", ":sqrt", ":power3"};
-    char text[96];
-    lq_print(text, sizeof text, "%.17g:%.17g:%zu%s", min, max, size, maps[map]);
-    return lq_axis_parse(axis, name, text, error);
+    static const lq_map maps[MAPS] = {LQ_MAP_LINEAR, LQ_MAP_SQRT, LQ_MAP_POWER};
+    static const double exponents[MAPS] = {1.0, 2.0, 3.0};
+    return lq_axis_make(axis, name, min, max, size, maps[map], exponents[map], error);
 }
 
 static void clear(lq_lobes *l) {
@@ -407,7 +393,7 @@ static bool allocate(trial *t) {
     for (int a = 0; a < LQ_LOBES_AXES; a++) {
         const lq_axis *axis = a < t->lobes->axis_count ? &t->lobes->axes[a] : NULL;
         there = make_taps(&t->fit[a], axis, s->at[a], s->count[a], 0) && there;
-        there = make_taps(&t->filter[a], axis, s->at[a], s->count[a], FILTER_BITS) && there;
+        there = make_taps(&t->filter[a], axis, s->at[a], s->count[a], LQ_FILTER_BITS) && there;
     }
     return there;
 }
@@ -555,7 +541,7 @@ void lq_lobes_sample(const lq_lobes *l, double mu, const double *values, int bit
     double above[LQ_LOBES_AXES] = {0.0}, sum[LQ_MATERIAL_NUMBERS] = {0.0};
     const int axes = l->channel_count > 0 ? l->axis_count : 0;
     for (int a = 0; a < axes; a++)
-        locate(&l->axes[a], a == 0 ? mu : values[a - 1], bits, &below[a], &above[a]);
+        below[a] = lq_texel_below(&l->axes[a], a == 0 ? mu : values[a - 1], bits, &above[a]);
     for (int corner = 0; corner < 1 << axes; corner++) {
         double w = 1.0;
         size_t at[LQ_LOBES_AXES] = {0};

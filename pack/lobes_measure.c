@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pack/measure.h"
 #include "system/parallel.h"
 #include "system/status.h"
-
-enum { FILTER_BITS = 8 };
 
 typedef struct solving {
     lq_lobes_exact *exact;
@@ -34,7 +33,7 @@ static void values_of(const lq_material *m, size_t set, double *values) {
 
 /* Nothing is open: one set says all. */
 static size_t sets_of(const lq_lobes_exact *exact, size_t material) {
-    return exact->materials[material].range_count > 0 ? exact->sets : 1;
+    return exact->materials[material]->range_count > 0 ? exact->sets : 1;
 }
 
 static double *numbers_of(const lq_lobes_exact *exact, size_t material, size_t set) {
@@ -48,8 +47,8 @@ static lq_status solve_set(void *user, size_t turn, int thread, lq_error *error)
     const size_t material = turn / exact->sets, set = turn % exact->sets;
     double values[LQ_MATERIAL_RANGES] = {0.0};
     if (set >= sets_of(exact, material)) return LQ_OK;
-    values_of(&exact->materials[material], set, values);
-    return lq_material_solve(&exact->materials[material], values, s->spread, exact->mu, LQ_EXACT_COSINES,
+    values_of(exact->materials[material], set, values);
+    return lq_material_solve(exact->materials[material], values, s->spread, exact->mu, LQ_EXACT_COSINES,
                              s->level, s->tolerance, numbers_of(exact, material, set), error);
 }
 
@@ -67,9 +66,9 @@ static lq_status prepare(lq_lobes_exact *exact, lq_spread *spread, lq_error *err
     return lq_spread_make(spread, mu, LQ_EXACT_COSINES + 1, error);
 }
 
-lq_status lq_lobes_exact_make(lq_lobes_exact *exact, const lq_material *materials, size_t count, size_t sets,
-                              int level, double tolerance, int threads, const lq_progress *progress,
-                              lq_error *error) {
+lq_status lq_lobes_exact_make(lq_lobes_exact *exact, const lq_material *const *materials, size_t count,
+                              size_t sets, int level, double tolerance, int threads,
+                              const lq_progress *progress, lq_error *error) {
     lq_spread spread = {0};
     *exact = (lq_lobes_exact){.materials = materials, .count = count, .sets = sets};
     solving s = {exact, level, tolerance, &spread};
@@ -100,7 +99,7 @@ static size_t compare_set(const lq_lobes_exact *exact, size_t material, size_t s
     const double *truth = numbers_of(exact, material, set);
     values_of(lobes->material, set, values);
     for (size_t i = 0; i < LQ_EXACT_COSINES; i++) {
-        lq_lobes_sample(lobes, exact->mu[i], values, FILTER_BITS, numbers);
+        lq_lobes_sample(lobes, exact->mu[i], values, LQ_FILTER_BITS, numbers);
         const size_t added =
             lq_lobes_compare(lobes->material, numbers, truth + i * LQ_MATERIAL_NUMBERS, errors + count);
         for (size_t e = count; e < count + added; e++) {

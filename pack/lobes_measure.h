@@ -10,7 +10,7 @@ enum { LQ_EXACT_COSINES = 48 };
 /* Materials solved at `sets` sets of their parameters that follow no grid (one where nothing is open), at 48
  * cosines from LQ_MATERIAL_FROM up each. */
 typedef struct lq_lobes_exact {
-    const lq_material *materials;
+    const lq_material *const *materials; /* which stay as long as this */
     size_t count, sets;
     double mu[LQ_EXACT_COSINES];
     double *numbers; /* [((material * sets + set) * cosines + m) * LQ_MATERIAL_NUMBERS + k] */
@@ -18,9 +18,9 @@ typedef struct lq_lobes_exact {
 
 /* `level` as in lq_material_solve: of a finer one than lobes were made from, or < 0 for exact ones to
  * `tolerance`. Free it in any case. */
-lq_status lq_lobes_exact_make(lq_lobes_exact *exact, const lq_material *materials, size_t count, size_t sets,
-                              int level, double tolerance, int threads, const lq_progress *progress,
-                              lq_error *error);
+lq_status lq_lobes_exact_make(lq_lobes_exact *exact, const lq_material *const *materials, size_t count,
+                              size_t sets, int level, double tolerance, int threads,
+                              const lq_progress *progress, lq_error *error);
 void lq_lobes_exact_free(lq_lobes_exact *exact);
 
 typedef struct lq_lobes_measure {

@@ -120,20 +120,13 @@ static void say_base(FILE *out, lq_language language, const lq_lobes *lobes) {
     fputs(");\n", out);
 }
 
-/* The roughness of the top is a constant, or one of the ranges. */
-static const lq_material_range *top_range(const lq_material *m) {
-    for (int r = 0; r < m->range_count; r++)
-        if (strcmp(m->ranges[r].path, "1.alpha") == 0) return &m->ranges[r];
-    return NULL;
-}
-
 static void say_top_alpha(FILE *out, lq_language language, const lq_material *m) {
     char low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
-    const lq_material_range *range = top_range(m);
-    if (!range) {
+    if (m->top_range < 0) {
         fprintf(out, "    l.top_alpha = %s;\n", lq_literal(m->top_alpha, language, low));
         return;
     }
+    const lq_material_range *range = &m->ranges[m->top_range];
     lq_say(out, language, "    l.top_alpha = @clamp(%s, %s, %s);\n", range->name,
            lq_literal(range->min, language, low), lq_literal(range->max, language, high));
 }

@@ -71,14 +71,15 @@ void lq_texture_free(lq_texture *texture) {
     *texture = (lq_texture){0};
 }
 
-/* The texel below x on an axis, and the weight of the one above. */
-static size_t locate(const lq_axis *axis, double x, int fraction_bits, float *weight) {
-    const double range = axis->max - axis->min, t = fmin(fmax((x - axis->min) / range, 0.0), 1.0);
+size_t lq_texel_below(const lq_axis *axis, double x, int fraction_bits, double *above) {
+    *above = 0.0;
+    if (axis->size < 2) return 0;
+    const double t = fmin(fmax((x - axis->min) / (axis->max - axis->min), 0.0), 1.0);
     double position = pow(t, 1.0 / axis->exponent) * (double)(axis->size - 1);
     if (fraction_bits > 0) position = ldexp(nearbyint(ldexp(position, fraction_bits)), -fraction_bits);
     const size_t last = axis->size - 2;
     const size_t below = (size_t)position < last ? (size_t)position : last;
-    *weight = (float)(position - (double)below);
+    *above = position - (double)below;
     return below;
 }
 
@@ -87,8 +88,12 @@ void lq_texture_sample(const lq_texture *texture, const double *point, int fract
     const size_t stride[LQ_TEXTURE_AXES] = {1, image->width, image->width * image->height};
     size_t first = 0;
     float weight[LQ_TEXTURE_AXES], sum[4] = {0.0f};
-    for (int a = 0; a < texture->axis_count; a++)
-        first += stride[a] * locate(&texture->axes[a], point[texture->from[a]], fraction_bits, &weight[a]);
+    for (int a = 0; a < texture->axis_count; a++) {
+        double above;
+        first +=
+            stride[a] * lq_texel_below(&texture->axes[a], point[texture->from[a]], fraction_bits, &above);
+        weight[a] = (float)above;
+    }
     for (int corner = 0; corner < 1 << texture->axis_count; corner++) {
         size_t texel = first;
         float w = 1.0f;
@@ -123,11 +128,11 @@ static double bend(const lq_texture *t, const size_t *below, int axis) {
 
 const char *lq_texture_bends(const lq_texture *texture, const double *point) {
     size_t below[LQ_TEXTURE_AXES] = {0};
-    float weight;
+    double above;
     const char *found = NULL;
     double most = 0.0;
     for (int a = 0; a < texture->axis_count; a++)
-        below[a] = locate(&texture->axes[a], point[texture->from[a]], 0, &weight);
+        below[a] = lq_texel_below(&texture->axes[a], point[texture->from[a]], 0, &above);
     for (int a = 0; a < texture->axis_count; a++) {
         const double b = bend(texture, below, a);
         if (b > most) found = texture->axes[a].name;

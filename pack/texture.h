@@ -25,6 +25,9 @@ void lq_texture_free(lq_texture *texture);
 lq_status lq_texture_check(const char *name, const lq_axis *axes, int axis_count, int channel_count,
                            lq_error *error);
 
+/* The texel below x on an axis, and the weight of the one above, in steps of 2^-fraction_bits; 0: exact. */
+size_t lq_texel_below(const lq_axis *axis, double x, int fraction_bits, double *above);
+
 /* What a GPU's sampler returns at a point of the table: float arithmetic on the stored halves, filter weights
  * of `fraction_bits` bits; 0: exact weights. */
 void lq_texture_sample(const lq_texture *texture, const double *point, int fraction_bits, double *values);

@@ -224,7 +224,7 @@ static lq_status bake_all(baking *b, double tolerance, int threads, const lq_pro
     return status;
 }
 
-lq_status lq_bake(const lq_material *materials, size_t count, const double *mu, size_t mu_count,
+lq_status lq_bake(const lq_material *const *materials, size_t count, const double *mu, size_t mu_count,
                   double tolerance, int threads, const lq_progress *progress, lq_baked *baked,
                   lq_error *error) {
     double *cosines = malloc((mu_count + 1) * sizeof *cosines), worst = 0.0;
@@ -239,7 +239,7 @@ lq_status lq_bake(const lq_material *materials, size_t count, const double *mu, 
         status = lq_spread_make(&spread, cosines, mu_count + 1, error);
     }
     for (size_t i = 0; i < count && status == LQ_OK; i++)
-        start(&b.growing[i], &baked[i], &materials[i], mu_count);
+        start(&b.growing[i], &baked[i], materials[i], mu_count);
     if (status == LQ_OK) status = bake_all(&b, tolerance, threads, progress, error);
     for (size_t i = 0; i < count; i++) worst = fmax(worst, baked[i].error);
     lq_spread_free(&spread);

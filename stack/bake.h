@@ -20,7 +20,7 @@ typedef struct lq_baked {
 
 /* All at the same cosines; to a tenth of `tolerance` as a rule. LQ_NOT_CONVERGED: some `error` is above it,
  * and all are there. Free each of them in any case. */
-lq_status lq_bake(const lq_material *materials, size_t count, const double *mu, size_t mu_count,
+lq_status lq_bake(const lq_material *const *materials, size_t count, const double *mu, size_t mu_count,
                   double tolerance, int threads, const lq_progress *progress, lq_baked *baked,
                   lq_error *error);
 void lq_baked_free(lq_baked *baked);

@@ -40,10 +40,11 @@ static void name_range(lq_material_range *range, const lq_stack *stack, size_t l
     const char *name = plain_name(p);
     char place[32] = "";
     snprintf(range->path, sizeof range->path, "%zu.%.12s", layer + 1, name);
-    if (!is_shared(stack, layer, p)) place[0] = '\0';
-    else if (layer == 0) strcpy(place, "top_");
-    else if (layer + 1 == stack->layer_count) strcpy(place, "base_");
-    else snprintf(place, sizeof place, "layer%zu_", layer + 1);
+    if (is_shared(stack, layer, p)) {
+        if (layer == 0) strcpy(place, "top_");
+        else if (layer + 1 == stack->layer_count) strcpy(place, "base_");
+        else snprintf(place, sizeof place, "layer%zu_", layer + 1);
+    }
     snprintf(range->name, sizeof range->name, "%s%.12s", place, name);
 }
 
@@ -60,6 +61,7 @@ static lq_status add_range(lq_material *m, size_t layer, const lq_parameter *p, 
                        "%s.%s is one range too many; accepted: at most %d besides the albedo of a lambertian "
                        "base",
                        lq_layer_type_name(m->stack->layers[layer].type), plain_name(p), LQ_MATERIAL_RANGES);
+    if (layer == 0 && strcmp(p->name, "alpha.x") == 0) m->top_range = m->range_count;
     lq_material_range *range = &m->ranges[m->range_count++];
     name_range(range, m->stack, layer, p);
     range->min = q->value[0];
@@ -85,7 +87,7 @@ static lq_status check_layer(const lq_layer *layer, size_t number, lq_error *err
 lq_status lq_material_describe(lq_material *m, const lq_stack *stack, lq_error *error) {
     const lq_layer *top = &stack->layers[0], *base = &stack->layers[stack->layer_count - 1];
     lq_status status = LQ_OK;
-    *m = (lq_material){.stack = stack, .lambertian = base->type == LQ_LAYER_LAMBERTIAN};
+    *m = (lq_material){.stack = stack, .lambertian = base->type == LQ_LAYER_LAMBERTIAN, .top_range = -1};
     if (base->type == LQ_LAYER_DIELECTRIC)
         return lq_fail(
             error, LQ_BAD_INPUT,
@@ -96,9 +98,8 @@ lq_status lq_material_describe(lq_material *m, const lq_stack *stack, lq_error *
             if (is_open(&stack->layers[i], &lq_parameters[k]))
                 status = add_range(m, i, &lq_parameters[k], error);
     }
-    m->coloured = lq_stack_channels(stack) > 1;
-    m->top_constant = top->type != LQ_LAYER_LAMBERTIAN && top->alpha_x.form != LQ_RANGE;
-    m->top_alpha = m->top_constant ? top->alpha_x.value[0] : 0.0;
+    if (top->type != LQ_LAYER_LAMBERTIAN && top->alpha_x.form != LQ_RANGE)
+        m->top_alpha = top->alpha_x.value[0];
     return status;
 }
 

@@ -43,9 +43,8 @@ typedef struct lq_material {
     bool lambertian;                              /* the base */
     bool open_rho;                                /* its albedo is a range, rho_min to rho_max */
     double rho_min, rho_max;
-    bool coloured;     /* some number is [r, g, b] */
-    bool top_constant; /* top_alpha, where the roughness of the top is no range */
-    double top_alpha;
+    int top_range;    /* which range is the roughness of the top; -1: it is */
+    double top_alpha; /* this */
 } lq_material;
 
 /* LQ_BAD_INPUT: more ranges than a texture has axes besides the cosine, a stack that lets light through, an
@@ -59,6 +58,11 @@ lq_status lq_material_describe(lq_material *material, const lq_stack *stack, lq_
 lq_status lq_material_solve(const lq_material *material, const double *values, const lq_spread *spread,
                             const double *mu, size_t count, int level, double tolerance, double *numbers,
                             lq_error *error);
+
+/* The roughness of the top interface, `values` one a range. */
+static inline double lq_material_top_alpha(const lq_material *m, const double *values) {
+    return m->top_range < 0 ? m->top_alpha : values[m->top_range];
+}
 
 /* The energy that leaves a Lambertian base of albedo rho. */
 static inline double lq_material_base(const double *numbers, int colour, const lq_material *m, double rho) {

@@ -167,12 +167,15 @@ static void test_bake(void **state) {
     lq_lobes_measure measure;
     const lq_lobes_budget budget = {4e-3, 1e-2};
     lq_lobes_cosines(mu);
-    assert_int_equal(lq_bake(&m, 1, mu, LQ_LOBES_COSINES, 1e-2, 0, NULL, &baked, &error), LQ_OK);
+    assert_int_equal(
+        lq_bake((const lq_material *const[]){&m}, 1, mu, LQ_LOBES_COSINES, 1e-2, 0, NULL, &baked, &error),
+        LQ_OK);
     assert_int_equal(lq_lobes_make(&lobes, &baked, &budget, &error), LQ_OK);
     assert_int_equal(lobes.axis_count, 3);
     assert_true(lobes.image.height == lobes.axes[2].size * lq_lobes_pitch(&lobes) - LQ_LOBES_BORDER);
     lq_lobes_exact exact;
-    assert_int_equal(lq_lobes_exact_make(&exact, &m, 1, 6, 1, 0.0, 0, NULL, &error), LQ_OK);
+    assert_int_equal(
+        lq_lobes_exact_make(&exact, (const lq_material *const[]){&m}, 1, 6, 1, 0.0, 0, NULL, &error), LQ_OK);
     assert_int_equal(lq_lobes_measure_one(&exact, 0, &lobes, &measure, &error), LQ_OK);
     lq_lobes_exact_free(&exact);
     print_message("two ranges: %zu bytes, p99 %.2e, max %.2e\n", lq_image_bytes(&lobes.image), measure.p99,

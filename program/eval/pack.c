@@ -46,12 +46,6 @@ static void take_material(eval_source *source, const lq_shipped_material *m) {
     memcpy(source->channels, channels, sizeof channels);
 }
 
-static double top_alpha(const lq_material *m, const double *values) {
-    for (int r = 0; r < m->range_count; r++)
-        if (strcmp(m->ranges[r].path, "1.alpha") == 0) return values[r];
-    return m->top_alpha;
-}
-
 void eval_material(const lq_shipped_material *material, const double *at, double *values) {
     const lq_material *m = &material->material;
     const double *rho = at + 1 + m->range_count;
@@ -62,7 +56,7 @@ void eval_material(const lq_shipped_material *material, const double *at, double
         values[4 + c] = n[LQ_MATERIAL_INNER + c];
         values[8 + c] = lq_material_base(n, c, m, m->open_rho ? rho[c] : 0.0);
     }
-    values[3] = top_alpha(m, at + 1);
+    values[3] = lq_material_top_alpha(m, at + 1);
     values[7] = n[LQ_MATERIAL_INNER_ALPHA];
     values[11] = n[LQ_MATERIAL_BASE_ALPHA];
 }

@@ -10,7 +10,6 @@
 #include "system/draft.h"
 #include "tables/facts.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,31 +182,21 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
 
 /* ------------------------------------------------------------------------------------------ a table */
 
-/* The largest that a fit moved a texel from the value of its node. */
-static double moved_by(const lq_table *before, const lq_table *after) {
-    double most = 0.0;
-    for (int c = 0; c < after->channel_count; c++)
-        for (size_t i = 0; i < lq_table_entries(after); i++)
-            most = fmax(most, fabs((double)after->channels[c][i] - (double)before->channels[c][i]));
-    return most;
-}
-
-/* The table's nodes, and what lies between them: fitted texels, and the fact that they are. */
+/* Texels that are fitted to what lies between the table's nodes, too; a fact says how far they are from them.
+ */
 static lq_status fit(pack_request *r, lq_packed *packed, lq_error *error) {
+    const int axes = packed->from->kind->axis_count;
     lq_recipe_table finer = *packed->from;
     const want whole = {0};
-    lq_table *samples = NULL, *nodes = packed->table;
+    lq_table *samples = NULL;
+    double moved = 0.0;
     memset(finer.axes, 0, sizeof finer.axes);
-    lq_status status = lq_fit_axes(packed->from->axes, packed->from->kind->axis_count, finer.axes, error);
+    lq_status status = lq_fit_axes(packed->from->axes, axes, finer.axes, error);
     if (status == LQ_OK) status = obtain(r, &finer, &whole, &samples, error);
-    if (status == LQ_OK)
-        status = obtain(r, packed->from, &whole, &packed->table, error); /* a copy of its own */
-    if (status == LQ_OK) status = lq_fit_texels(packed->table, samples, LQ_MEASURE_FROM, error);
-    if (status == LQ_OK)
-        status = lq_table_set_number(packed->table, "fit", moved_by(nodes, packed->table), error);
-    for (int a = 0; a < packed->from->kind->axis_count; a++) lq_axis_free(&finer.axes[a]);
+    if (status == LQ_OK) status = lq_fit_texels(packed->table, samples, LQ_MEASURE_FROM, &moved, error);
+    if (status == LQ_OK) status = lq_table_set_number(packed->table, "fit", moved, error);
+    for (int a = 0; a < axes; a++) lq_axis_free(&finer.axes[a]);
     lq_table_free(samples);
-    if (packed->table != nodes) lq_table_free(nodes);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #include "program/pack/pack.h"
 #include "program/progress.h"
 #include "system/parallel.h"
+#include "system/status.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,16 +12,11 @@
 /* Where a recipe asks for none. */
 static const lq_lobes_budget DEFAULT = {2e-3, 1e-2};
 
-/* The share of a budget that a bake may be off by at its coarser nodes; that of the finer ones is far less.
- */
+/* What a bake may be off by at its coarser nodes, in budgets: twice as many, which it keeps, are some hundred
+ * times as good. What they come to is measured. */
 static const double BAKED = 2.0;
 
 enum { POINTS_PER_SET = 500, FEWEST_SETS = 4, MOST_SETS = 64, CHECK_LEVEL = 1 };
-
-static lq_status out_of_memory(lq_error *error) {
-    snprintf(error->text, sizeof error->text, "out of memory");
-    return LQ_NO_MEMORY;
-}
 
 static lq_lobes_budget budget_of(const lq_recipe *recipe) {
     if (!isfinite(recipe->p99) && !isfinite(recipe->max)) return DEFAULT;
@@ -63,7 +59,7 @@ static lq_status check(void *user, size_t i, int thread, lq_error *error) {
 }
 
 /* The exact values that fits are checked against. */
-static lq_status solve_exact(fitting *f, const lq_material *materials, lq_error *error) {
+static lq_status solve_exact(fitting *f, const lq_material *const *materials, lq_error *error) {
     const lq_recipe *recipe = f->packing->recipe;
     const size_t asked = recipe->points / POINTS_PER_SET;
     const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
@@ -102,7 +98,7 @@ static lq_status fit_all(fitting *f, lq_error *error) {
 }
 
 static lq_status bake(const pack_request *r, const lq_recipe *recipe, const lq_lobes_budget *budget,
-                      const lq_material *materials, lq_baked *baked, lq_error *error) {
+                      const lq_material *const *materials, lq_baked *baked, lq_error *error) {
     double mu[LQ_LOBES_COSINES];
     cli_progress bar;
     lq_lobes_cosines(mu);
@@ -117,24 +113,20 @@ static lq_status bake(const pack_request *r, const lq_recipe *recipe, const lq_l
 lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
     const lq_recipe *recipe = packing->recipe;
     const size_t count = recipe->material_count;
-    lq_material *materials = calloc(count, sizeof *materials);
+    const lq_material **materials = calloc(count, sizeof *materials);
     lq_baked *baked = calloc(count, sizeof *baked);
     fitting f = {.request = r, .packing = packing, .baked = baked, .budget = budget_of(recipe)};
     f.share = calloc(count, sizeof *f.share);
-    lq_status status = materials && baked && f.share ? LQ_OK : out_of_memory(error);
+    lq_status status = materials && baked && f.share ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "out of memory");
     for (size_t i = 0; i < count && status == LQ_OK; i++) {
         packing->materials[i].from = &recipe->materials[i];
         lq_make_identifier(packing->materials[i].name, recipe->materials[i].name);
-        materials[i] = recipe->materials[i].material;
+        materials[i] = &recipe->materials[i].material;
     }
     if (status == LQ_OK) status = bake(r, recipe, &f.budget, materials, baked, error);
     if (status == LQ_OK) status = solve_exact(&f, materials, error);
     if (status == LQ_OK) status = fit_all(&f, error);
     if (status == LQ_OK) status = lq_parallel(count, (int)r->threads, refer, &f, NULL, error);
-    for (size_t i = 0; i < count; i++) { /* which point to a material that goes */
-        packing->materials[i].lobes.material = &recipe->materials[i].material;
-        packing->materials[i].reference.material = &recipe->materials[i].material;
-    }
     for (size_t i = 0; baked && i < count; i++) lq_baked_free(&baked[i]);
     free(materials);
     free(baked);

@@ -57,14 +57,14 @@ lq_status validate_materials(const certify_request *request, const lq_pack *pack
     const size_t count = pack->material_count, asked = request->points / POINTS_PER_SET;
     const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
     if (count == 0) return LQ_OK;
-    lq_material *materials = malloc(count * sizeof *materials);
+    const lq_material **materials = malloc(count * sizeof *materials);
     lq_lobes_measure *measures = malloc(count * sizeof *measures);
     lq_lobes_exact exact = {0};
     lq_status status = LQ_NO_MEMORY;
     cli_progress bar;
     cli_progress_begin(&bar, "materials");
     if (materials && measures) {
-        for (size_t i = 0; i < count; i++) materials[i] = pack->materials[i].material;
+        for (size_t i = 0; i < count; i++) materials[i] = &pack->materials[i].material;
         status = lq_lobes_exact_make(&exact, materials, count, sets, -1, EXACT, request->threads,
                                      &bar.progress, error);
     } else snprintf(error->text, sizeof error->text, "out of memory");
