@@ -339,11 +339,12 @@ bool lq_pack_found(const char *folder) {
 lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
     reader r = {folder, NULL, error};
     char path[4096];
+    json_t *root;
     *pack = (lq_pack){.count = 0};
     snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
-    json_t *root;
     lq_status status = lq_json_read(&root, path, error);
     if (status != LQ_OK) return status;
+    pack->manifest = root;
     json_t *tables = json_object_get(root, "tables");
     const char *name = json_string_value(json_object_get(root, "pack"));
     const size_t count = json_array_size(tables);
@@ -356,7 +357,6 @@ lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
     for (size_t i = 0; status == LQ_OK && i < count; i++)
         status = read_table(&r, json_array_get(tables, i), &pack->tables[pack->count++]);
     if (status == LQ_OK) status = read_materials(&r, json_object_get(root, "materials"), pack);
-    json_decref(root);
     if (status != LQ_OK) lq_pack_free(pack);
     return status;
 }
@@ -378,5 +378,6 @@ void lq_pack_free(lq_pack *pack) {
     lq_shipped_free(&pack->atlas);
     free(pack->tables);
     free(pack->materials);
+    json_decref(pack->manifest);
     *pack = (lq_pack){.count = 0};
 }

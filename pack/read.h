@@ -6,6 +6,8 @@
 #include "pack/recipe.h"
 #include "pack/texture.h"
 
+#include "system/json.h"
+
 /* One table, with the facts of what made it. */
 typedef struct lq_shipped {
     char name[LQ_NAME_SIZE];
@@ -37,6 +39,7 @@ typedef struct lq_pack {
     size_t material_count;
     lq_shipped_material *materials;
     lq_shipped atlas; /* its image, where textures are in one; and what its files are like */
+    json_t *manifest; /* what it says of itself besides: what was measured, the source it has */
 } lq_pack;
 
 /* Whether a folder holds a manifest. */

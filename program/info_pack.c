@@ -1,7 +1,6 @@
 /* info_pack.c - what a manifest says, once the pack is read and its files are as they were made. */
 #include "program/info_pack.h"
 
-#include "pack/contents.h"
 #include "pack/read.h"
 #include "program/message.h"
 #include "program/output.h"
@@ -79,7 +78,8 @@ static const char *altered(const lq_pack *pack) {
     return NULL;
 }
 
-static void print_text(const char *folder, const lq_pack *pack, const json_t *manifest) {
+static void print_text(const char *folder, const lq_pack *pack) {
+    const json_t *manifest = pack->manifest;
     const json_t *atlas = json_object_get(manifest, "atlas"), *decode = json_object_get(manifest, "decode");
     printf("%s: pack %s, %.0f bytes of textures", folder, pack->name, number_at(manifest, "texture-bytes"));
     if (atlas) printf(" in one of %.0f x %.0f texels", number_at(atlas, "width"), number_at(atlas, "height"));
@@ -96,20 +96,14 @@ static void print_text(const char *folder, const lq_pack *pack, const json_t *ma
 }
 
 int info_pack(const char *folder, bool as_json) {
-    char path[4096];
     lq_pack pack;
     lq_error error = {""};
-    json_t *manifest = NULL;
     bool printed = true;
-    lq_status status = lq_pack_read(&pack, folder, &error);
+    const lq_status status = lq_pack_read(&pack, folder, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
-    snprintf(path, sizeof path, "%s/" LQ_MANIFEST, folder);
-    status = lq_json_read(&manifest, path, &error);
-    if (status == LQ_OK && !as_json) print_text(folder, &pack, manifest);
-    else if (status == LQ_OK)
-        printed = cli_print_json(json_incref(manifest), JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    if (as_json)
+        printed = cli_print_json(json_incref(pack.manifest), JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    else print_text(folder, &pack);
     lq_pack_free(&pack);
-    json_decref(manifest);
-    if (status != LQ_OK) return cli_fail_status(status, &error);
     return printed ? CLI_DONE : CLI_FAILED;
 }

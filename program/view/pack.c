@@ -6,24 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pack/contents.h"
 #include "system/json.h"
 #include "system/status.h"
 
 /* ======================================================================================
  *                                       The manifest
  * ====================================================================================== */
-
-static json_t *read_manifest(const char *folder, lq_error *error) {
-    char path[4096];
-    json_t *root;
-    if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, LQ_MANIFEST) >= sizeof path) {
-        lq_fail(error, LQ_BAD_INPUT, "the name of the pack's folder is too long");
-        return NULL;
-    }
-    lq_json_read(&root, path, error);
-    return root;
-}
 
 /* Entry `i` of "tables" or "materials". */
 static const json_t *entry_of(const json_t *manifest, const char *list, size_t i) {
@@ -171,10 +159,9 @@ static lq_status check_atlas(lq_figure *figure, const lq_shipped *atlas, lq_erro
  *                                         The pack
  * ====================================================================================== */
 
-static lq_status start(const lq_pack *pack, const json_t *manifest, const char *folder, lq_figure **figure,
-                       lq_error *error) {
+static lq_status start(const lq_pack *pack, const char *folder, lq_figure **figure, lq_error *error) {
     char text[LQ_MESSAGE_SIZE], materials[48] = "";
-    const json_int_t bytes = json_integer_value(json_object_get(manifest, "texture-bytes"));
+    const json_int_t bytes = json_integer_value(json_object_get(pack->manifest, "texture-bytes"));
     if (pack->material_count > 0)
         snprintf(materials, sizeof materials, "%zu material%s, ", pack->material_count,
                  pack->material_count == 1 ? "" : "s");
@@ -184,13 +171,12 @@ static lq_status start(const lq_pack *pack, const json_t *manifest, const char *
 }
 
 /* All that it holds; then, where asked for, what functions are made of. */
-static lq_status fill(lq_figure *figure, const lq_pack *pack, const json_t *manifest, bool factors,
-                      lq_error *error) {
+static lq_status fill(lq_figure *figure, const lq_pack *pack, bool factors, lq_error *error) {
     lq_status status = check_atlas(figure, &pack->atlas, error);
     for (size_t i = 0; status == LQ_OK && i < pack->material_count; i++)
-        status = add_material(figure, &pack->materials[i], entry_of(manifest, "materials", i), error);
+        status = add_material(figure, &pack->materials[i], entry_of(pack->manifest, "materials", i), error);
     for (size_t i = 0; status == LQ_OK && i < pack->count; i++)
-        status = add(figure, &pack->tables[i], entry_of(manifest, "tables", i), error);
+        status = add(figure, &pack->tables[i], entry_of(pack->manifest, "tables", i), error);
     for (size_t i = 0; status == LQ_OK && factors && i < pack->count; i++)
         if (pack->tables[i].factored)
             status = view_add_factors(figure, pack->tables[i].factored, pack->tables[i].name, error);
@@ -201,10 +187,8 @@ lq_status view_pack(const char *folder, bool factors, lq_figure **figure, lq_err
     lq_pack pack = {0};
     lq_status status = lq_pack_read(&pack, folder, error);
     if (status != LQ_OK) return status;
-    json_t *manifest = read_manifest(folder, error);
-    status = manifest ? start(&pack, manifest, folder, figure, error) : LQ_FORMAT;
-    if (status == LQ_OK) status = fill(*figure, &pack, manifest, factors, error);
-    json_decref(manifest);
+    status = start(&pack, folder, figure, error);
+    if (status == LQ_OK) status = fill(*figure, &pack, factors, error);
     lq_pack_free(&pack);
     return status;
 }
