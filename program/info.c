@@ -167,7 +167,7 @@ const cli_verb cli_verb_info = {
     .option_count = CLI_COUNTED(options),
     .examples = "lacquer info fgd.exr\n"
                 "lacquer info --format json fgd.exr\n"
-                "lacquer info out/scene\n"
+                "lacquer info scene-pack\n"
                 "lacquer info TIR.bin --layout belcour --kind tir-pass",
     .run = run,
 };

@@ -232,6 +232,6 @@ const cli_verb cli_verb_eval = {
                 "printf 'alpha,mu\\n0.5,0.1\\n0.5,0.9\\n' | lacquer eval albedo --format csv\n"
                 "lacquer eval --from fgd.exr mu=0.3 alpha=0.5 n=0.2 kappa=3.9\n"
                 "lacquer eval --from t01-factors.exr mu=0.3 alpha=0.2 eta=1.5 tau=0.5\n"
-                "lacquer eval --from out/scene gold mu=0.3 alpha=0.2",
+                "lacquer eval --from scene-pack gold mu=0.3 alpha=0.2",
     .run = run,
 };

@@ -248,8 +248,10 @@ static void print_notes(FILE *out) {
     fprintf(
         out,
         "A NAME is that of a shipped recipe or scene: realtime, dfg, scene.\n"
-        "DIR gets the texture of each table, or those of its factors, in every format asked for, decode\n"
-        "source in GLSL, HLSL and C, and " LQ_MANIFEST ": how each file was made and the error it was\n"
+        "DIR gets the texture of each table, or those of its factors, or all of them in one atlas, in every\n"
+        "format asked for, decode source in GLSL, HLSL and C (with an atlas also Vulkan, WGSL and Metal),\n"
+        "of a scene a page, " LQ_PACK_PAGE ", and " LQ_MANIFEST
+        ": how each file was made and the error it was\n"
         "measured to have, with half storage and 8-bit filter weights. DIR is complete or untouched.\n"
         "Exit 2: a budget was missed. What a recipe may hold: docs/packs.md; those shipped: recipes/.\n\n");
 }
@@ -261,7 +263,7 @@ const cli_verb cli_verb_pack = {
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
-    .examples = "lacquer pack scene -o out/scene\n"
+    .examples = "lacquer pack scene -o scene-pack\n"
                 "lacquer pack recipes/realtime.json -o realtime\n"
                 "lacquer pack recipes/dfg.json -o textures --cache ~/tables",
     .run = run,
