@@ -78,6 +78,7 @@ lq_plan_axis lq_media_axis(const lq_media *media, double n) {
         axis.stepped[c] = axis.width[c] > LQ_SMOOTH_ALPHA && axis.width[c] < STEP_ALPHA;
         if (axis.width[c] < SHARP_ALPHA && axis.sharp.count < LQ_FACET_CUTS_MAX)
             axis.sharp.cosine[axis.sharp.count++] = axis.cut[c];
+        axis.width[c] = 0.0; /* of no more use: stacks that differ in it share their axes */
     }
     return axis;
 }

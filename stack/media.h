@@ -16,7 +16,7 @@ typedef struct lq_plan_axis {
     double n; /* index of the medium */
     int cut_count;
     double cut[LQ_ELEMENTS_MAX];   /* cosines, ascending */
-    double width[LQ_ELEMENTS_MAX]; /* roughness that each step has passed */
+    double width[LQ_ELEMENTS_MAX]; /* roughness that each step has passed, while cuts are looked for */
     bool stepped[LQ_ELEMENTS_MAX]; /* nodes resolve it from below only if they are dense there */
     lq_facet_cuts sharp;           /* those that divide the facet integrals and nodes of other interfaces */
 } lq_plan_axis;

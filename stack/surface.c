@@ -102,9 +102,9 @@ static void make_kinks(lq_surface_work *w) {
 }
 
 /* No two levels share a resolution that could be what limits both. */
-static const lq_resolution resolutions[LQ_SURFACE_LEVELS] = {
-    {12, 20, 10, 16}, {16, 24, 12, 20}, {20, 28, 16, 24}, {28, 32, 20, 30},
-    {40, 36, 26, 36}, {56, 40, 36, 46}, {84, 44, 52, 60}};
+static const lq_resolution resolutions[LQ_SURFACE_LEVELS + 1] = {
+    {8, 16, 9, 14},   {12, 20, 10, 16}, {16, 24, 12, 20}, {20, 28, 16, 24},
+    {28, 32, 20, 30}, {40, 36, 26, 36}, {56, 40, 36, 46}, {84, 44, 52, 60}};
 
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
@@ -141,14 +141,14 @@ static int nodes_each(const lq_surface *s, int level, int elements) {
     static const int step[4] = {1, 4, 2, 4};
     const int unit = step[elements % 4], grows = unit > 2 ? unit : 2;
     const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
-    const int share = (int)(resolutions[level].nodes * length) / elements,
-              fewest = FEWEST_NODES + grows * level;
+    const int share = (int)(resolutions[level - LQ_LEVEL_TRIAL].nodes * length) / elements,
+              fewest = FEWEST_NODES + grows * (level - LQ_LEVEL_TRIAL);
     return ((share > fewest ? share : fewest) + unit - 1) / unit * unit;
 }
 
 static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
-    lq_resolution r = resolutions[level];
+    lq_resolution r = resolutions[level - LQ_LEVEL_TRIAL];
     r.nodes = nodes_each(s, level, splits.count + 1);
     return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 0.0 : s->eta, &r, &splits);
 }

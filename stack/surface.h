@@ -34,7 +34,8 @@ typedef struct lq_surface {
     size_t entry_count[2];
 } lq_surface;
 
-enum { LQ_SURFACE_LEVELS = 7 };
+/* Levels of resolution count from 0; LQ_LEVEL_TRIAL is there to judge level 0 by. */
+enum { LQ_LEVEL_TRIAL = -1, LQ_SURFACE_LEVELS = 7 };
 
 /* One surface at one level of resolution. Its rows may be filled in any order and by any thread, then its
  * batches be solved likewise; then blocks can be had. A smooth surface has neither rows nor batches. */
