@@ -41,6 +41,7 @@ void lq_depths_make(lq_depths *depths, int count) {
     depths->count = count;
     /* Polynomials of degree count - 1, and a density that is one of some dozen degrees on every panel. */
     lq_gauss_make(&depths->rule, count / 2 + 8);
+    for (int i = 0; i < count; i++) depths->two_x[i] = 2.0 * cos(chebyshev_angle(depths, i));
     for (int i = 0; i < count / 2; i++) {
         depths->t[i] = 0.5 * (1.0 + cos(chebyshev_angle(depths, i)));
         depths->t[count - 1 - i] = 1.0 - depths->t[i];
@@ -91,17 +92,17 @@ static void add_depths(moments *m, int degrees, int count, const double *t, cons
 static void project(const lq_depths *depths, const moments *m, double sum, double *weights) {
     const int n = depths->count;
     const double scale = m->of[0] > 0.0 ? sum / m->of[0] : 0.0;
-    for (int i = 0; i < n; i++) {
-        /* sum_k m_k (2 - delta_k0)/n cos(k angle_i), by Clenshaw */
-        const double two_x = 2.0 * cos(chebyshev_angle(depths, i));
-        double b1 = 0.0, b2 = 0.0;
-        for (int k = n - 1; k >= 1; k--) {
-            const double b0 = 2.0 / n * m->of[k] + two_x * b1 - b2;
-            b2 = b1;
-            b1 = b0;
+    /* sum_k m_k (2 - delta_k0)/n cos(k angle_i) by Clenshaw, all points abreast */
+    double b1[LQ_DEPTHS_MAX] = {0.0}, b2[LQ_DEPTHS_MAX] = {0.0};
+    for (int k = n - 1; k >= 1; k--) {
+        const double next = 2.0 / n * m->of[k];
+        for (int i = 0; i < n; i++) {
+            const double b0 = next + depths->two_x[i] * b1[i] - b2[i];
+            b2[i] = b1[i];
+            b1[i] = b0;
         }
-        weights[i] = scale * (m->of[0] / n + 0.5 * two_x * b1 - b2);
     }
+    for (int i = 0; i < n; i++) weights[i] = scale * (m->of[0] / n + 0.5 * depths->two_x[i] * b1[i] - b2[i]);
 }
 
 /* Moments of exp(power (ln u - ln u0)) power/u du over the panels. */

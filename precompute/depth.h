@@ -21,9 +21,10 @@ enum { LQ_DEPTHS_MAX = LQ_DEPTHS_LIMIT };
 
 typedef struct lq_depths {
     int count;
-    lq_gauss rule;           /* of the travel integrals */
-    double t[LQ_DEPTHS_MAX]; /* ascending */
-    double u[LQ_DEPTHS_MAX]; /* u[k] + u[count - 1 - k] = 1 */
+    lq_gauss rule;               /* of the travel integrals */
+    double t[LQ_DEPTHS_MAX];     /* ascending */
+    double u[LQ_DEPTHS_MAX];     /* u[k] + u[count - 1 - k] = 1 */
+    double two_x[LQ_DEPTHS_MAX]; /* of the Chebyshev points x = 2 t - 1 */
 } lq_depths;
 
 /* 4 <= count <= LQ_DEPTHS_MAX, a multiple of 4: the kernels take four at a time. */

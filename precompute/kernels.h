@@ -8,7 +8,7 @@ enum {
     LQ_LANES = 8,        /* materials that are solved together */
     LQ_NODES_MAX = 384,  /* cosines of the finest level */
     LQ_FACETS_MAX = 256, /* facets handed over at once */
-    LQ_DEPTHS_LIMIT = 44 /* collocation depths of the finest level */
+    LQ_DEPTHS_LIMIT = 64 /* collocation depths of the finest level */
 };
 
 /* Eight doubles in GCC's vector extension: one zmm register, two ymm or four xmm. Always passed by pointer:
@@ -88,6 +88,10 @@ typedef struct lq_solver_kernels {
                     lq_v8 *out);
     /* out: the sum of weights[k * nodes + j] c[k * 2 nodes + j]. */
     void (*contract)(int depths, int nodes, const double *weights, const lq_v8 *c, lq_v8 *out);
+    /* out += sum over k and j of arrival[k] weight[j] c[k * 2 nodes + j], the arrival read backwards or not.
+     */
+    void (*arrive)(int depths, int nodes, const double *arrival, int backwards, const double *weight,
+                   const lq_v8 *c, lq_v8 *out);
     void (*read)(const lq_readout *readout, const lq_sylvester *s, const lq_v8 *ratio, lq_v8 *energy);
 } lq_solver_kernels;
 

@@ -412,8 +412,24 @@ static void contract(int depths, int nodes, const double *restrict weights, cons
     *out = sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
+static void arrive(int depths, int nodes, const double *restrict arrival, int backwards,
+                   const double *restrict weight, const lq_v8 *restrict c, lq_v8 *restrict out) {
+    lq_v8 total = *out;
+    for (int k = 0; k < depths; k++) {
+        const double a = arrival[backwards ? depths - 1 - k : k];
+        const lq_v8 *at = c + (size_t)k * 2 * (size_t)nodes;
+        lq_v8 sum[4] = {{0.0}};
+        /* Node counts are multiples of four. */
+        for (int j = 0; j < nodes; j += 4)
+            for (int b = 0; b < 4; b++) sum[b] += weight[j + b] * at[j + b];
+        total += a * (sum[0] + sum[1] + (sum[2] + sum[3]));
+    }
+    *out = total;
+}
+
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments,  moments3, escaping, spread,  assemble, sweep,
-                                              survival, travel,   meet,     average, contract, read_energies};
+    static const lq_solver_kernels kernels = {moments,  moments3, escaping,     spread, assemble,
+                                              sweep,    survival, travel,       meet,   average,
+                                              contract, arrive,   read_energies};
     return &kernels;
 }

@@ -51,19 +51,28 @@ static void add_conductor(lq_plan_axis *axis, const lq_media *media, double widt
     if (found[0].distance < 0.15) add_cut(axis, cos(found[0].angle), width);
 }
 
+/* From this cosine on, what rises to a rough interface beside the medium meets no facet beyond its critical
+ * angle. Facets that stand on edge, alpha^2 of all, make a kink of that. */
+static void add_cone(lq_plan_axis *axis, double n, double width) {
+    if (n < 0.9 * axis->n) add_cut(axis, n / axis->n, width);
+}
+
 /* What medium i sees through interfaces up to CUT_ALPHA. */
 static void look(lq_plan_axis *axis, const lq_media *media, size_t i) {
     double width = 0.0;
     for (size_t above = i; above > 0; above--) {
         width = fmax(width, media->alpha[above - 1]);
+        if (width > CUT_ALPHA && above == i) add_cone(axis, media->n[above - 1], width);
         if (width > CUT_ALPHA) break;
         add_medium(axis, media->n[above - 1], width);
     }
     width = 0.0;
     for (size_t below = i; below < media->count; below++) {
         width = fmax(width, media->alpha[below]);
+        const bool divides = below + 1 < media->count;
+        if (width > CUT_ALPHA && below == i && divides) add_cone(axis, media->n[below + 1], width);
         if (width > CUT_ALPHA) break;
-        if (below + 1 < media->count) add_medium(axis, media->n[below + 1], width);
+        if (divides) add_medium(axis, media->n[below + 1], width);
         else add_conductor(axis, media, width);
     }
 }

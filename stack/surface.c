@@ -106,6 +106,11 @@ static const lq_resolution resolutions[LQ_SURFACE_LEVELS + 1] = {
     {8, 16, 9, 14},   {12, 20, 10, 16}, {16, 24, 12, 20}, {20, 28, 16, 24},
     {28, 32, 20, 30}, {40, 36, 26, 36}, {56, 40, 36, 46}, {84, 44, 52, 60}};
 
+/* Light along the horizon: it starts a millionth from the end of the depths and at nodes as far down, with
+ * powers that are not smooth there, and errors go as depths^-4. */
+static const int grazing_nodes[LQ_SURFACE_LEVELS + 1] = {10, 16, 20, 28, 34, 40, 56, 84};
+static const int grazing_depths[LQ_SURFACE_LEVELS + 1] = {24, 32, 40, 48, 52, 56, 60, 64};
+
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
 /* Splits closer than this to each other or to an end are left out: their element would have nodes for
@@ -141,7 +146,9 @@ static int nodes_each(const lq_surface *s, int level, int elements) {
     static const int step[4] = {1, 4, 2, 4};
     const int unit = step[elements % 4], grows = unit > 2 ? unit : 2;
     const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
-    const int share = (int)(resolutions[level - LQ_LEVEL_TRIAL].nodes * length) / elements,
+    const int all =
+        s->grazing ? grazing_nodes[level - LQ_LEVEL_TRIAL] : resolutions[level - LQ_LEVEL_TRIAL].nodes;
+    const int share = (int)(all * length) / elements,
               fewest = FEWEST_NODES + grows * (level - LQ_LEVEL_TRIAL);
     return ((share > fewest ? share : fewest) + unit - 1) / unit * unit;
 }
@@ -150,6 +157,7 @@ static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
     lq_resolution r = resolutions[level - LQ_LEVEL_TRIAL];
     r.nodes = nodes_each(s, level, splits.count + 1);
+    if (s->grazing) r.depths = grazing_depths[level - LQ_LEVEL_TRIAL];
     return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 0.0 : s->eta, &r, &splits);
 }
 
@@ -362,15 +370,12 @@ static void read_entry(const lq_surface_work *w, int side, size_t row, size_t v,
     const entry_rows *e = &w->entry[side];
     const double *arrival = e->arrival + row * (size_t)depths;
     const double *staying = e->staying + (row * variants(w) + v) * 3 * (size_t)n;
-    lq_v8 mean[2 * LQ_NODES_MAX], refracted;
+    lq_v8 refracted;
     memset(sum, 0, sizeof *sum);
-    kernels->average(depths, 2 * n, arrival, false, x->before[side], mean);
-    for (int j = 0; j < n; j++) *sum += staying[j] * mean[j];
-    kernels->average(depths, 2 * n, arrival, false, x->value[side], mean);
-    for (int j = 0; j < n; j++) *sum += staying[n + j] * mean[n + j];
+    kernels->arrive(depths, n, arrival, false, staying, x->before[side], sum);
+    kernels->arrive(depths, n, arrival, false, staying + n, x->value[side] + n, sum);
     if (w->sides == 1) return;
-    kernels->average(depths, 2 * n, arrival, true, x->value[1 - side], mean);
-    for (int j = 0; j < n; j++) *sum += staying[2 * n + j] * mean[n + j];
+    kernels->arrive(depths, n, arrival, true, staying + 2 * n, x->value[1 - side] + n, sum);
     kernels->contract(depths, n, e->refracted + (row * LQ_MODES + v) * (size_t)(n * depths),
                       x->before[1 - side], &refracted);
     *sum += refracted;

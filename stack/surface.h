@@ -32,6 +32,7 @@ typedef struct lq_surface {
     lq_facet_cuts sharp[2]; /* cosines of the axes at which interfaces, smooth or nearly so, make steps */
     const double *entry[2]; /* cosines at which light arrives */
     size_t entry_count[2];
+    bool grazing; /* light from outside arrives along the horizon, or nearly so */
 } lq_surface;
 
 /* Levels of resolution count from 0; LQ_LEVEL_TRIAL is there to judge level 0 by. */

@@ -6,7 +6,6 @@
 #include "precompute/along.h"
 #include "stack/description.h"
 #include "stack/level.h"
-#include "system/parallel.h"
 #include "system/status.h"
 #include "tables/facts.h"
 
@@ -16,7 +15,8 @@ static const char *const moments[] = {
 static const char *const energies[] = {"reflected.r",   "reflected.g",   "reflected.b",
                                        "transmitted.r", "transmitted.g", "transmitted.b"};
 
-/* A table is solved by turns, one a set of the parameters; along one axis of them, at values of lq_along. */
+/* A table is solved by turns, one for a set of the parameters; along one axis of them, at values of lq_along.
+ */
 typedef struct filling {
     const lq_stack *stack;
     const lq_stack_query *query;
@@ -25,10 +25,10 @@ typedef struct filling {
     int along_axis; /* -1: there are no parameters */
     bool interpolates;
     lq_along along;
-    size_t others;      /* sets of the other parameters */
-    size_t first, done; /* values of `along` that a loop is at, and that are solved */
-    double *solved;     /* [((value * others) + other) * numbers_of + channel * cosines + m] */
-    double *errors;     /* likewise, of each turn */
+    size_t others;  /* sets of the other parameters */
+    size_t done;    /* values of `along` that are solved */
+    double *solved; /* [((value * others) + other) * numbers_of + channel * cosines + m] */
+    double *errors; /* likewise, of each turn */
 } filling;
 
 static bool is_opaque(const lq_stack *stack) {
@@ -71,50 +71,89 @@ static lq_status set_parameters(const filling *f, size_t value, size_t other, lq
     return status;
 }
 
-static void keep(const filling *f, const lq_stack_light *light, double *numbers) {
+/* The light of one turn, which is the first of `stride` channels at `light`. */
+static void keep(const filling *f, const lq_stack_light *light, size_t stride, size_t place) {
+    double *numbers = f->solved + place * numbers_of(f);
     const size_t count = cosines_of(f);
     const bool rgb = f->channels > 1;
-    for (size_t m = 0; m < count; m++)
+    for (size_t m = 0; m < count; m++, light += stride) {
         for (int k = 0; k < f->table->channel_count; k++) {
-            const lq_stack_light *l = &light[m * (size_t)f->channels + (rgb ? (size_t)k % 3 : 0)];
+            const lq_stack_light *l = &light[rgb ? (size_t)k % 3 : 0];
             const lq_stack_lobe *lobe = k < (rgb ? 3 : 4) ? &l->reflected : &l->transmitted;
             const double of_lobe[4] = {lobe->energy, lobe->sin2, lobe->mean, lobe->across};
             numbers[(size_t)k * count + m] = of_lobe[rgb ? 0 : k % 4];
         }
+        for (int c = 0; c < f->channels; c++) f->errors[place] = fmax(f->errors[place], light[c].error);
+    }
 }
 
-static lq_status solve_turn(void *user, size_t turn, int thread, lq_error *error) {
-    (void)thread;
-    const filling *f = user;
+/* Turns that are solved as one list share what does not depend on the parameters; so many layers are held at
+ * once. */
+enum { LAYERS_TOGETHER = 96 };
+
+static size_t turns_together(const filling *f) {
+    const size_t of_one = f->stack->layer_count * (size_t)f->channels;
+    return of_one < LAYERS_TOGETHER ? LAYERS_TOGETHER / of_one : 1;
+}
+
+/* Solving a list reports what has been done before it, and can be stopped. */
+typedef struct list_progress {
+    const lq_progress *all;
+    double fraction;
+} list_progress;
+
+static bool report_list(void *user, double fraction) {
+    (void)fraction;
+    const list_progress *p = user;
+    return !p->all || !p->all->report || p->all->report(p->all->user, p->fraction);
+}
+
+static void free_list(lq_stack **list, size_t count) {
+    for (size_t i = 0; list && i < count; i++) lq_stack_free(list[i]);
+    free((void *)list);
+}
+
+/* `count` turns from a place on. */
+static lq_status solve_list(const filling *f, size_t first, size_t count, const lq_progress *progress,
+                            lq_error *error) {
     const lq_axis *mu = &f->table->axes[f->mu_axis];
     lq_stack_query query = *f->query;
     query.mu = mu->nodes;
     query.mu_count = mu->size;
     query.paths = 0;
     query.tolerance = (f->interpolates ? 1.0 - INTERPOLATION : 1.0) * tolerance_of(f);
-    lq_stack *stack = NULL;
-    const size_t place = f->first * f->others + turn;
-    lq_stack_light *light = malloc((mu->size * (size_t)f->channels + 1) * sizeof *light);
-    lq_status status = light ? lq_stack_copy(&stack, f->stack, error)
-                             : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", mu->size);
-    if (status == LQ_OK) status = set_parameters(f, place / f->others, place % f->others, stack, error);
-    if (status == LQ_OK) status = lq_stack_solve(stack, &query, light, NULL, error);
-    if (status == LQ_OK || status == LQ_NOT_CONVERGED) {
-        keep(f, light, f->solved + place * numbers_of(f));
-        for (size_t i = 0; i < mu->size * (size_t)f->channels; i++)
-            f->errors[place] = fmax(f->errors[place], light[i].error);
+    const size_t channels = count * (size_t)f->channels;
+    lq_stack **list = calloc(count, sizeof(lq_stack *));
+    lq_stack_light *light = malloc(mu->size * channels * sizeof *light);
+    lq_status status =
+        list && light ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu stacks", count);
+    for (size_t i = 0; i < count && status == LQ_OK; i++) {
+        status = lq_stack_copy(&list[i], f->stack, error);
+        if (status == LQ_OK)
+            status = set_parameters(f, (first + i) / f->others, (first + i) % f->others, list[i], error);
     }
-    lq_stack_free(stack);
+    if (status == LQ_OK)
+        status = lq_stack_solve_list((const lq_stack *const *)list, count, &query, light, progress, error);
+    for (size_t i = 0; i < count && (status == LQ_OK || status == LQ_NOT_CONVERGED); i++)
+        keep(f, light + i * (size_t)f->channels, channels, first + i);
+    free_list(list, count);
     free(light);
     return status;
 }
 
 /* Solve what `along` has and is not solved yet. */
 static lq_status solve_turns(filling *f, const lq_progress *progress, lq_error *error) {
-    f->first = f->done;
-    const size_t turns = (f->along.count - f->first) * f->others;
+    const size_t from = f->done * f->others, to = f->along.count * f->others, together = turns_together(f);
+    lq_status status = LQ_OK;
     f->done = f->along.count;
-    return turns ? lq_parallel(turns, f->query->threads, solve_turn, f, progress, error) : LQ_OK;
+    for (size_t at = from; at < to; at += together) {
+        list_progress p = {progress, (double)(at - from) / (double)(to - from)};
+        const lq_progress of_list = {report_list, &p};
+        const lq_status list = solve_list(f, at, at + together < to ? together : to - at, &of_list, error);
+        if (list != LQ_OK && list != LQ_NOT_CONVERGED) return list;
+        if (list != LQ_OK) status = list;
+    }
+    return status;
 }
 
 /* ======================================================================================
