@@ -14,10 +14,11 @@
  * (smooth interfaces among rough ones), 9 and 10 are off by the same 1e-4, and agree. */
 static const int axis_nodes[LQ_SURFACE_LEVELS + 1] = {9, 12, 16, 20, 26, 34, 44, 56};
 
-/* A lone element has 2.4 times as many: behind an interface of alpha = 1 it needs 24 for 1e-5. Rewards
- * outside the stack are smooth. */
+/* Few elements have so many times as many each: behind an interface of alpha = 1 a lone one needs 24 for
+ * 1e-5. Rewards outside the stack are smooth. */
 static int nodes_of(int level, int elements, bool outer) {
-    const double share = outer ? 1.4 : fmax(0.8 + 1.6 / elements, 1.0);
+    static const double shares[] = {2.4, 1.55, 1.4, 1.1};
+    const double share = outer ? 0.9 : elements <= 4 ? shares[elements - 1] : 1.0;
     return (int)(axis_nodes[level - LQ_LEVEL_TRIAL] * share);
 }
 
@@ -282,6 +283,10 @@ static void mark_outer(const lq_plan *plan, bool *outer) {
     }
 }
 
+/* Where the axis outside is divided, with cosines of masking below: one element of as many nodes is off by
+ * twenty times as much at alpha = 0.016. */
+static const double OUTER_CUT = 0.2;
+
 /* From cut to cut; what lies below a step is halved, so that nodes are dense on both sides of the step. */
 static int elements_of(const lq_plan_axis *a, bool outer, lq_root_element *elements) {
     int count = 0;
@@ -291,6 +296,7 @@ static int elements_of(const lq_plan_axis *a, bool outer, lq_root_element *eleme
         if (halved) elements[count++] = (lq_root_element){0.5 * (from + a->cut[c]), false};
         elements[count++] = (lq_root_element){a->cut[c], halved};
     }
+    if (outer) elements[count++] = (lq_root_element){OUTER_CUT, false};
     elements[count++] = (lq_root_element){1.0, false};
     return count;
 }

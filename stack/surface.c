@@ -26,6 +26,7 @@ struct lq_surface_work {
     lq_surface spec;
     lq_rough_level *level; /* NULL: known in closed form */
     int nodes, depths, sides;
+    double settled;
     size_t columns; /* rewards: nodes of the axes of both media */
     lq_panels kinks[2];
     double *memory;
@@ -108,8 +109,9 @@ static const lq_resolution resolutions[LQ_SURFACE_LEVELS + 1] = {
 
 /* Light along the horizon: it starts a millionth from the end of the depths and at nodes as far down, with
  * powers that are not smooth there, and errors go as depths^-4. */
-static const int grazing_nodes[LQ_SURFACE_LEVELS + 1] = {10, 16, 20, 28, 34, 40, 56, 84};
-static const int grazing_depths[LQ_SURFACE_LEVELS + 1] = {24, 32, 40, 48, 52, 56, 60, 64};
+static const lq_resolution grazing[LQ_SURFACE_LEVELS + 1] = {
+    {20, 32, 10, 14}, {23, 40, 12, 18}, {30, 44, 16, 24}, {36, 48, 20, 30},
+    {44, 52, 26, 36}, {56, 56, 36, 46}, {66, 60, 44, 52}, {84, 64, 52, 60}};
 
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
@@ -140,24 +142,25 @@ static lq_level_splits splits_of(const lq_surface *s) {
     return splits;
 }
 
+static lq_resolution resolution_of(const lq_surface *s, int level) {
+    return (s->grazing ? grazing : resolutions)[level - LQ_LEVEL_TRIAL];
+}
+
 /* Nodes of one element: of the length of the axis, which is logarithmic down to alpha, and more at every
  * level even where many elements share few; all nodes together are a multiple of four. */
 static int nodes_each(const lq_surface *s, int level, int elements) {
     static const int step[4] = {1, 4, 2, 4};
     const int unit = step[elements % 4], grows = unit > 2 ? unit : 2;
     const double length = 1.0 + 0.15 * log(1.0 / s->alpha);
-    const int all =
-        s->grazing ? grazing_nodes[level - LQ_LEVEL_TRIAL] : resolutions[level - LQ_LEVEL_TRIAL].nodes;
-    const int share = (int)(all * length) / elements,
+    const int share = (int)(resolution_of(s, level).nodes * length) / elements,
               fewest = FEWEST_NODES + grows * (level - LQ_LEVEL_TRIAL);
     return ((share > fewest ? share : fewest) + unit - 1) / unit * unit;
 }
 
 static lq_rough_level *make_level(const lq_surface *s, int level) {
     const lq_level_splits splits = splits_of(s);
-    lq_resolution r = resolutions[level - LQ_LEVEL_TRIAL];
+    lq_resolution r = resolution_of(s, level);
     r.nodes = nodes_each(s, level, splits.count + 1);
-    if (s->grazing) r.depths = grazing_depths[level - LQ_LEVEL_TRIAL];
     return lq_rough_level_make(s->ndf, s->alpha, s->opaque ? 0.0 : s->eta, &r, &splits);
 }
 
@@ -172,9 +175,16 @@ static void fill_survival(lq_surface_work *w) {
     }
 }
 
+/* What the passes that are not made may add up to, for one of some hundred rewards: a thousandth of what the
+ * coarsest levels reach. The rows of a dielectric are scaled to all light afterwards. */
+static double settled_at(const lq_surface *s, int level) {
+    return s->opaque ? 1e-12 : level <= 0 ? 1e-8 : 1e-9;
+}
+
 static bool allocate(lq_surface_work *w, int level) {
     const lq_surface *s = &w->spec;
     w->sides = s->opaque ? 1 : 2;
+    w->settled = settled_at(s, level);
     if (is_closed(s)) return true;
     w->level = make_level(s, level);
     if (!w->level) return false;
@@ -412,10 +422,6 @@ static void load_source(const lq_surface_work *w, size_t v, size_t column, size_
     }
 }
 
-/* What the passes that are not made may add up to; the rows of a dielectric are scaled to all light
- * afterwards. */
-static const double SETTLED = 1e-9, SETTLED_OPAQUE = 1e-12;
-
 lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
     const size_t v = batch / batches_of_one(w), first = batch % batches_of_one(w) * LQ_LANES;
     const size_t n = (size_t)w->nodes, rows = v * n * 4 * n;
@@ -433,7 +439,7 @@ lq_status lq_surface_batch(lq_surface_work *w, size_t batch, lq_error *error) {
         hits.rise[s] = w->rise[s] + rows;
     }
     for (size_t l = 0; l < LQ_LANES && first + l < w->columns; l++) load_source(w, v, first + l, l, source);
-    const bool settled = lq_hits_solve(&hits, &x, w->spec.opaque ? SETTLED_OPAQUE : SETTLED);
+    const bool settled = lq_hits_solve(&hits, &x, w->settled);
     if (settled) read_batch(w, v, first, &x);
     lq_hits_values_free(&x);
     free(source);

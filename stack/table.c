@@ -40,7 +40,7 @@ static bool is_opaque(const lq_stack *stack) {
  * ====================================================================================== */
 
 /* The share of the tolerance that interpolation may take. */
-static const double INTERPOLATION = 0.4;
+static const double INTERPOLATION = 0.25;
 
 static double tolerance_of(const filling *f) {
     return lq_stack_tolerance(f->query);
