@@ -8,7 +8,7 @@ enum {
     LQ_LANES = 8,        /* materials that are solved together */
     LQ_NODES_MAX = 384,  /* cosines of the finest level */
     LQ_FACETS_MAX = 256, /* facets handed over at once */
-    LQ_DEPTHS_LIMIT = 64 /* collocation depths of the finest level */
+    LQ_DEPTHS_LIMIT = 80 /* collocation depths of the finest level */
 };
 
 /* Eight doubles in GCC's vector extension: one zmm register, two ymm or four xmm. Always passed by pointer:

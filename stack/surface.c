@@ -111,7 +111,7 @@ static const lq_resolution resolutions[LQ_SURFACE_LEVELS + 1] = {
  * powers that are not smooth there, and errors go as depths^-4. */
 static const lq_resolution grazing[LQ_SURFACE_LEVELS + 1] = {
     {20, 32, 10, 14}, {23, 40, 12, 18}, {30, 44, 16, 24}, {36, 48, 20, 30},
-    {44, 52, 26, 36}, {56, 56, 36, 46}, {66, 60, 44, 52}, {84, 64, 52, 60}};
+    {44, 56, 26, 36}, {56, 64, 32, 42}, {66, 72, 40, 50}, {84, 80, 52, 60}};
 
 enum { FEWEST_NODES = 8, SPLITS_MAX = 3 };
 
