@@ -1,10 +1,11 @@
-/* model.c - the layers of a stack, from the top, through B18's adding. */
+/* model.c - what models refuse, and B18's: the layers of a stack, from the top, through its adding. */
 #include "stack/model.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "stack/description.h"
+#include "stack/model_baked.h"
 #include "stack/spread.h"
 #include "system/parallel.h"
 #include "system/status.h"
@@ -17,10 +18,10 @@ size_t lq_model_lobe_count(const lq_stack *stack) {
  *                                     What is refused
  * ====================================================================================== */
 
-static lq_status check_layer(const lq_stack *stack, size_t i, lq_error *error) {
+static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model, lq_error *error) {
     const lq_layer *layer = &stack->layers[i];
     if (layer->type == LQ_LAYER_LAMBERTIAN)
-        return i <= 1
+        return i <= 1 || model == LQ_MODEL_BAKED
                    ? LQ_OK
                    : lq_fail(error, LQ_BAD_INPUT,
                              "a lambertian base under %zu coats; accepted in a model: one coat, or none", i);
@@ -33,7 +34,8 @@ static lq_status check_layer(const lq_stack *stack, size_t i, lq_error *error) {
 static lq_status check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
     const lq_stack_query light = {.mu = query->mu, .mu_count = query->mu_count};
     lq_status status = lq_stack_solvable(stack, &light, error);
-    for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++) status = check_layer(stack, i, error);
+    for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++)
+        status = check_layer(stack, i, query->model, error);
     return status;
 }
 
@@ -163,15 +165,25 @@ static lq_status turn(void *user, size_t index, int thread, lq_error *error) {
     return pass_down(&p, j->lobes + index * lq_model_lobe_count(j->stack), error);
 }
 
-lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
-                         const lq_progress *progress, lq_error *error) {
-    lq_model_mapping mapping;
-    const job j = {stack, query, {query->variant, &mapping}, lobes};
-    lq_status status = check(stack, query, error);
-    if (status == LQ_OK) status = lq_model_mapping_make(&mapping, query->f, error);
-    if (status != LQ_OK) return status;
+static lq_status solve_b18(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
+                           const lq_progress *progress, lq_error *error) {
+    const job j = {stack, query, {query->variant, query->mapping}, lobes};
     return lq_parallel(query->mu_count * (size_t)lq_stack_channels(stack), query->threads, turn, (void *)&j,
                        progress, error);
+}
+
+lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
+                         const lq_progress *progress, lq_error *error) {
+    lq_model_query mapped = *query;
+    lq_model_mapping own;
+    lq_status status = check(stack, query, error);
+    if (!query->mapping) {
+        mapped.mapping = &own;
+        if (status == LQ_OK) status = lq_model_mapping_make(&own, query->f, error);
+    }
+    if (status != LQ_OK) return status;
+    return query->model == LQ_MODEL_BAKED ? lq_model_baked(stack, &mapped, lobes, progress, error)
+                                          : solve_b18(stack, &mapped, lobes, progress, error);
 }
 
 /* ======================================================================================

@@ -30,10 +30,18 @@ says '"variant": "released"'
 says '"mapping": "b18"'
 [ "$(grep -c '"roughness"' out)" -eq 2 ] || fail "not two lobes: $(cat out)"
 
+run 0 stack "$metal" --model baked --mu 0.6 --format json
+says '"variant": null'
+run 0 stack "$stacks/varnished-base.json" --model baked --mu 0.6 --format csv
+says '^0\.6,0,0\.1157'
+run 0 stack --help
+says '^  baked '
+
 # ------------------------------------------------------------------------------------------- refused
 refused "b18-symmetric.*b18-forward" stack "$slab" --model b18-symmetric
 refused 'lambertian base under 2 coats' stack "$stacks/varnished-base.json" $model
 refused '--paths has no effect with --model' stack "$slab" $model --paths
+refused '--variant has no effect with --model baked' stack "$slab" --model baked --variant paper
 refused '--mapping has no effect without --model' stack "$slab" --mapping b18
 echo '{"layers": [{"conductor": {"n": 1, "kappa": 1, "alpha": {"x": 0.3, "y": 0.1}}}]}' >a.json
 refused 'layer 1 is anisotropic' stack a.json $model

@@ -20,7 +20,7 @@ enum {
     OPTION_VARIANT,
     OPTION_MAPPING
 };
-enum { EXACT = 1, MODEL = 2 };
+enum { EXACT = 1, VARIED = 2, OTHER = 4 };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 
 typedef struct stack_request {
@@ -35,20 +35,19 @@ typedef struct stack_request {
 } stack_request;
 
 static const char *const formats[] = {"text", "csv", "json", NULL};
-static const char *const models[] = {"b18-forward", NULL};
 static const char *const variants[] = {"paper", "released", NULL}; /* as lq_model_variant */
 static const char *const mappings[] = {"exact", "b18", NULL};      /* as lq_model_f */
 
 static const cli_option options[] = {
     CLI_MU_OPTION(stack_request, 0),
     CLI_SIDE_OPTIONS(stack_request, EXACT),
-    {OPTION_MODEL, "model", "b18-forward", "a model's lobes, one an interface, instead of what is exact",
-     CLI_CHOICE(stack_request, model, models)},
+    {OPTION_MODEL, "model", "NAME", "a model's lobes instead of what is exact: see below",
+     CLI_CHOICE(stack_request, model, lq_model_names)},
     {OPTION_VARIANT, "variant", "paper|released",
      "B18 as printed, or as its code was released (default paper)",
-     CLI_CHOICE(stack_request, variant, variants), .modes = MODEL},
+     CLI_CHOICE(stack_request, variant, variants), .modes = VARIED},
     {OPTION_MAPPING, "mapping", "exact|b18", "f of roughness: computed, or B18's fit of it (default exact)",
-     CLI_CHOICE(stack_request, mapping, mappings), .modes = MODEL},
+     CLI_CHOICE(stack_request, mapping, mappings), .modes = VARIED},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
@@ -114,10 +113,12 @@ static int print_model(const stack_request *request, const model_result *result)
 static int solve_model(const stack_request *request, const lq_stack *stack) {
     const lq_model_query query = {.mu = request->light.mu,
                                   .mu_count = request->light.count,
+                                  .model = (lq_model_id)request->model,
                                   .variant = (lq_model_variant)request->variant,
                                   .f = (lq_model_f)request->mapping,
                                   .threads = (int)request->threads};
     const int channels = lq_stack_channels(stack);
+    const bool varied = lq_model_kinds[request->model].varied;
     lq_error error = {""};
     lq_model_lobe *lobes =
         calloc(query.mu_count * (size_t)channels * lq_model_lobe_count(stack), sizeof *lobes);
@@ -128,14 +129,19 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
     cli_progress_end(&bar);
     const model_result result = {.stack = stack,
                                  .query = &query,
-                                 .model = models[request->model],
-                                 .variant = variants[request->variant],
-                                 .mapping = mappings[request->mapping],
+                                 .model = lq_model_names[request->model],
+                                 .variant = varied ? variants[request->variant] : NULL,
+                                 .mapping = varied ? mappings[request->mapping] : NULL,
                                  .channels = channels,
                                  .lobes = lobes};
     const int code = status == LQ_OK ? print_model(request, &result) : cli_fail_status(status, &error);
     free(lobes);
     return code;
+}
+
+static unsigned mode_of(const stack_request *request) {
+    if (request->model < 0) return EXACT;
+    return lq_model_kinds[request->model].varied ? VARIED : OTHER;
 }
 
 static int run(int argc, char **argv) {
@@ -145,8 +151,9 @@ static int run(int argc, char **argv) {
     lq_stack *stack = NULL;
     if (!cli_parse(&cli_verb_stack, argc, argv, &request, take_word, &given)) return CLI_FAILED;
     const bool exact = request.model < 0;
-    if (!cli_suits(&given, exact ? EXACT : MODEL, exact ? "without --model" : "with --model"))
-        return CLI_FAILED;
+    char where[64] = "without --model";
+    if (!exact) snprintf(where, sizeof where, "with --model %s", lq_model_names[request.model]);
+    if (!cli_suits(&given, mode_of(&request), where)) return CLI_FAILED;
     if (!request.path) return cli_fail("no stack; usage: lacquer stack FILE.json [options]");
     const lq_status status =
         lq_stack_read(&stack, request.path, request.trusted ? LQ_STACK_TRUSTED : 0, &error);
@@ -164,13 +171,16 @@ static void print_notes(FILE *out) {
         "from the light) and across = E[sin^2 theta sin^2 phi]. `error` is an estimate for every number of\n"
         "its line, never meant to be too small. CSV leaves a field empty where there is no such light.\n"
         "--paths goes on until no more than a hundredth of the light is left; its last line holds that.\n"
-        "--model prints the lobes of the statistical model of Belcour 2018 instead, a line each: energy, "
-        "mean\n"
-        "(sin theta of its direction), variance (f of its roughness) and GGX roughness, by the layer that "
-        "adds\n"
-        "it; CSV has the same columns as without it, `error` empty.\n"
+        "--model prints the lobes of a model instead, a line each: energy, mean (sin theta of its "
+        "direction),\n"
+        "variance (f of its roughness, where the model has one) and GGX roughness, by the layer that adds "
+        "it;\n"
+        "CSV has the same columns as without it, `error` empty.\n"
         "FILE.json describes layers from the top; see docs/stacks.md.\n"
-        "Exit 2: printed, but some estimate is above the tolerance.\n\n");
+        "Exit 2: printed, but some estimate is above the tolerance.\n\nModels (--model):\n");
+    for (int i = 0; i < LQ_MODELS; i++)
+        fprintf(out, "  %-14s %s\n", lq_model_names[i], lq_model_kinds[i].title);
+    fputc('\n', out);
 }
 
 const cli_verb cli_verb_stack = {

@@ -24,7 +24,7 @@ int stack_print_json(const stack_result *result);
 typedef struct model_result {
     const lq_stack *stack;
     const lq_model_query *query;
-    const char *model, *variant, *mapping; /* as the options name them */
+    const char *model, *variant, *mapping; /* as the options name them; NULL: it has none */
     int channels;
     const lq_model_lobe *lobes;
 } model_result;
