@@ -78,7 +78,7 @@ static lq_status interface_of(passage *p, const lq_layer *layer, double looked_u
 static lq_status go_down(passage *p, size_t at, double looked_up, lq_error *error) {
     double pass;
     const double tau = lq_medium_transmittance(&p->stack->layers[at].medium, p->channel);
-    const lq_status status = lq_model_pass(p->ray, p->above, looked_up, &pass, error);
+    const lq_status status = lq_model_pass(p->tables, p->ray, p->above, looked_up, &pass, error);
     if (status != LQ_OK) return status;
     lq_model_reflect_back(&p->sum, pass);
     lq_model_cross(&p->sum, pow(tau, 1.0 / p->ray.cosine));
@@ -108,7 +108,7 @@ static lq_status add_diffuse(passage *p, size_t at, lq_model_lobe *lobe, lq_erro
         coat.alpha = top->alpha_x.value[c];
         coat.tau = lq_medium_transmittance(&top->medium, c);
     }
-    const lq_status status = lq_model_diffuse(&coat, &lobe->energy, &lobe->alpha, error);
+    const lq_status status = lq_model_diffuse(p->tables, &coat, &lobe->energy, &lobe->alpha, error);
     lobe->variance = lq_model_variance(p->tables->mapping, lobe->alpha);
     return status;
 }
@@ -150,26 +150,34 @@ typedef struct job {
 /* Tables take light along the horizon for light just above it. */
 static const double LEAST_MU = 1e-6;
 
-static lq_status turn(void *user, size_t index, int thread, lq_error *error) {
+/* One cosine. */
+static lq_status turn(void *user, size_t m, int thread, lq_error *error) {
     (void)thread;
     const job *j = user;
-    const size_t channels = (size_t)lq_stack_channels(j->stack);
-    const double mu = fmax(j->query->mu[index / channels], LEAST_MU);
-    passage p = {.stack = j->stack,
-                 .tables = &j->tables,
-                 .channel = (int)(index % channels),
-                 .mu = mu,
-                 .ray = {mu, 1.0},
-                 .sum = lq_model_nothing(),
-                 .above = 1.0};
-    return pass_down(&p, j->lobes + index * lq_model_lobe_count(j->stack), error);
+    const int channels = lq_stack_channels(j->stack);
+    const double mu = fmax(j->query->mu[m], LEAST_MU);
+    lq_model_memo memo = {0};
+    lq_model_tables tables = j->tables;
+    lq_status status = LQ_OK;
+    tables.memo = &memo;
+    for (int c = 0; c < channels && status == LQ_OK; c++) {
+        passage p = {.stack = j->stack,
+                     .tables = &tables,
+                     .channel = c,
+                     .mu = mu,
+                     .ray = {mu, 1.0},
+                     .sum = lq_model_nothing(),
+                     .above = 1.0};
+        const size_t line = m * (size_t)channels + (size_t)c;
+        status = pass_down(&p, j->lobes + line * lq_model_lobe_count(j->stack), error);
+    }
+    return status;
 }
 
 static lq_status solve_b18(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
                            const lq_progress *progress, lq_error *error) {
-    const job j = {stack, query, {query->variant, query->mapping}, lobes};
-    return lq_parallel(query->mu_count * (size_t)lq_stack_channels(stack), query->threads, turn, (void *)&j,
-                       progress, error);
+    const job j = {stack, query, {query->variant, query->mapping, query->tolerance, NULL}, lobes};
+    return lq_parallel(query->mu_count, query->threads, turn, (void *)&j, progress, error);
 }
 
 lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
@@ -177,6 +185,8 @@ lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_
     lq_model_query mapped = *query;
     lq_model_mapping own;
     lq_status status = check(stack, query, error);
+    if (lq_model_kinds[query->model].of_pairs)
+        return lq_fail(error, LQ_BAD_INPUT, "%s has no lobes of one incidence", lq_model_names[query->model]);
     if (!query->mapping) {
         mapped.mapping = &own;
         if (status == LQ_OK) status = lq_model_mapping_make(&own, query->f, error);

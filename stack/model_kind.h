@@ -6,12 +6,18 @@
 
 #include "lacquer.h"
 
-typedef enum lq_model_id { LQ_MODEL_B18_FORWARD, LQ_MODEL_BAKED, LQ_MODELS } lq_model_id;
+typedef enum lq_model_id {
+    LQ_MODEL_B18_FORWARD,
+    LQ_MODEL_B18_SYMMETRIC,
+    LQ_MODEL_BAKED,
+    LQ_MODELS
+} lq_model_id;
 
 typedef struct lq_model_kind {
     const char *title;
     const char *takes; /* which stacks, in a message's words */
     bool varied;       /* has variants and takes a mapping (model.h) */
+    bool of_pairs;     /* each pair of directions has lobes of its own: model_shape.h alone has it */
 } lq_model_kind;
 
 extern const lq_model_kind lq_model_kinds[LQ_MODELS];

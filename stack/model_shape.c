@@ -1,99 +1,148 @@
-/* model_shape.c - the lobes of one incidence as densities of directions. */
+/* model_shape.c - the lobes of a model as densities of directions. */
 #include "stack/model_shape.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "system/status.h"
 
-static const double PI = 3.14159265358979323846;
-
-/* Light along the horizon is that just above it, as tables have it. */
-static const double LEAST_MU = 1e-6;
-
 /* ======================================================================================
- *                                         A lobe
+ *                                   Lobes of an incidence
  * ====================================================================================== */
 
-static lq_status albedo(double mu, double alpha, double *value, lq_error *error) {
-    const lq_kind *kind = lq_kind_find("albedo", error);
-    const lq_settings settings = lq_settings_default();
-    double estimate;
-    if (!kind) return LQ_BAD_INPUT;
-    const lq_status status = lq_eval(kind, &settings, (double[]){mu, alpha}, value, &estimate, error);
-    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+static double least_alpha(const lq_shape_query *query) {
+    return query->least_alpha > 0.0 ? query->least_alpha : LQ_SHAPE_LEAST_ALPHA;
 }
 
-/* D G2 / (4 mu_i), at an outgoing direction above the horizon. The tangent of the half vector is taken from
- * differences, so that a narrow lobe keeps its digits. */
-static double unscaled(const lq_shape_lobe *lobe, double x, double y, double z) {
-    const double a2 = lobe->alpha * lobe->alpha, in = lobe->cosine;
-    const double along = x - lobe->sine, up = z + in;
-    const double tan2 = (along * along + y * y) / (up * up), widened = a2 + tan2;
-    const double d = a2 * (1.0 + tan2) * (1.0 + tan2) / (PI * widened * widened);
-    const double si = sqrt(a2 + (1.0 - a2) * in * in), so = sqrt(a2 + (1.0 - a2) * z * z);
-    return d * z / (2.0 * (z * si + in * so));
+static double cosine_of(double sine) {
+    const double s = fmin(fmax(sine, 0.0), 1.0);
+    return sqrt((1.0 - s) * (1.0 + s));
 }
 
 static lq_status make_lobe(lq_shape_lobe *lobe, const lq_model_lobe *from, const lq_shape_query *query,
                            lq_error *error) {
-    const double sine = fmin(fmax(from->mean, 0.0), 1.0);
-    const double least = query->least_alpha > 0.0 ? query->least_alpha : LQ_SHAPE_LEAST_ALPHA;
-    double whole = 1.0;
-    *lobe = (lq_shape_lobe){.energy = from->energy, .alpha = fmin(fmax(from->alpha, least), 1.0)};
-    lobe->cosine = fmax(sqrt((1.0 - sine) * (1.0 + sine)), LEAST_MU);
-    lobe->sine = sqrt((1.0 - lobe->cosine) * (1.0 + lobe->cosine));
+    double albedo = 1.0;
+    *lobe = (lq_shape_lobe){.energy = from->energy,
+                            .alpha = fmin(fmax(from->alpha, least_alpha(query)), 1.0),
+                            .from = lq_incidence_of(cosine_of(from->mean))};
     if (!(from->energy > 0.0)) return LQ_OK;
-    const lq_status status = query->masked ? LQ_OK : albedo(lobe->cosine, lobe->alpha, &whole, error);
-    lobe->scale = from->energy / whole;
+    const lq_status status =
+        query->masked ? LQ_OK : lq_lobe_albedo(lobe->from.cosine, lobe->alpha, &albedo, error);
+    lobe->scale = from->energy / albedo;
     return status;
 }
 
-/* ======================================================================================
- *                                         All
- * ====================================================================================== */
-
-static lq_status make_lobes(lq_model_shape *shape, const lq_model_lobe *lobes, const lq_shape_query *query,
-                            lq_error *error) {
-    lq_status status = LQ_OK;
-    for (size_t i = 0; i < shape->count * (size_t)shape->channels && status == LQ_OK; i++) {
-        status = make_lobe(&shape->lobes[i], &lobes[i], query, error);
-        if (lobes[i].energy > 0.0) shape->sharpest = fmin(shape->sharpest, lobes[i].alpha);
-    }
-    return status;
+static lq_model_query query_of(const lq_shape_query *query, lq_model_id model) {
+    return (lq_model_query){.model = model,
+                            .variant = query->variant,
+                            .f = query->f,
+                            .mapping = query->mapping,
+                            .threads = query->threads};
 }
 
-lq_status lq_model_shape_make(lq_model_shape *shape, const lq_stack *stack, const lq_shape_query *query,
-                              double mu, lq_error *error) {
-    const lq_model_query light = {.mu = &mu,
-                                  .mu_count = 1,
-                                  .model = query->model,
-                                  .variant = query->variant,
-                                  .f = query->f,
-                                  .mapping = query->mapping,
-                                  .threads = 1};
-    *shape = (lq_model_shape){
-        .channels = lq_stack_channels(stack), .count = lq_model_lobe_count(stack), .sharpest = 1.0};
+static lq_status aim_lobes(lq_model_shape *shape, double mu, lq_error *error) {
+    lq_model_query query = query_of(&shape->query, shape->query.model);
     const size_t all = shape->count * (size_t)shape->channels;
     lq_model_lobe *lobes = calloc(all, sizeof *lobes);
-    shape->lobes = calloc(all, sizeof *shape->lobes);
-    lq_status status = lobes && shape->lobes ? lq_model_solve(stack, &light, lobes, NULL, error)
-                                             : lq_fail(error, LQ_NO_MEMORY,
-                                                       "no memory for the lobes of %zu layers", shape->count);
-    if (status == LQ_OK) status = make_lobes(shape, lobes, query, error);
+    query.mu = &mu;
+    query.mu_count = 1;
+    lq_status status = lobes ? lq_model_solve(shape->stack, &query, lobes, NULL, error)
+                             : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", all);
+    for (size_t i = 0; i < all && status == LQ_OK; i++) {
+        status = make_lobe(&shape->lobes[i], &lobes[i], &shape->query, error);
+        if (lobes[i].energy > 0.0) shape->sharpest = fmin(shape->sharpest, lobes[i].alpha);
+    }
     free(lobes);
     return status;
 }
 
+/* ======================================================================================
+ *                                  Lobes of a half vector
+ * ====================================================================================== */
+
+/* Index of the medium that light leaves into by lobe k. */
+static double index_after(const lq_model_shape *shape, int channel, size_t k) {
+    const size_t layers = shape->stack->layer_count;
+    return k < layers ? 1.0 : shape->stack->layers[layers - 1].n.value[channel];
+}
+
+/* A cosine in the medium of that index as it is outside; beyond the critical angle along the horizon. */
+static double outside(double cosine, double index) {
+    return cosine_of(index * sqrt((1.0 - cosine) * (1.0 + cosine)));
+}
+
+static lq_status aim_grid(lq_model_shape *shape, double mu, lq_error *error) {
+    if (!(mu >= 0.0 && mu <= 1.0)) return lq_fail(error, LQ_BAD_INPUT, "mu = %g; accepted: 0 <= mu <= 1", mu);
+    const double sine = lq_incidence_of(mu).sine;
+    for (size_t i = 0; i < shape->count * (size_t)shape->channels; i++) {
+        const size_t k = i % shape->count;
+        const double index = index_after(shape, (int)(i / shape->count), k);
+        const lq_grid_lobe lobe = lq_shape_grid_at(&shape->grid, i, mu);
+        shape->lobes[i] = (lq_shape_lobe){.energy = lobe.energy,
+                                          .alpha = lobe.alpha,
+                                          .scale = lobe.scale,
+                                          .from = lq_incidence_of(cosine_of(sine / index))};
+        if (lobe.energy > 0.0) shape->sharpest = fmin(shape->sharpest, lobe.alpha);
+    }
+    return LQ_OK;
+}
+
+/* A lobe about the normal has no half vector with the light. */
+static lq_status make_grid(lq_model_shape *shape, lq_error *error) {
+    const lq_model_query query = query_of(&shape->query, LQ_MODEL_B18_FORWARD);
+    const lq_stack *stack = shape->stack;
+    if (stack->layers[stack->layer_count - 1].type == LQ_LAYER_LAMBERTIAN)
+        return lq_fail(error, LQ_BAD_INPUT, "a lambertian base; accepted by %s: a conductor, or none",
+                       lq_model_names[shape->query.model]);
+    return lq_shape_grid_make(&shape->grid, stack, &query, least_alpha(&shape->query), shape->query.masked,
+                              error);
+}
+
+/* ======================================================================================
+ *                                         Both
+ * ====================================================================================== */
+
+lq_status lq_model_shape_aim(lq_model_shape *shape, double mu, lq_error *error) {
+    shape->sharpest = 1.0;
+    return shape->grid.nodes > 0 ? aim_grid(shape, mu, error) : aim_lobes(shape, mu, error);
+}
+
+lq_status lq_model_shape_make(lq_model_shape *shape, const lq_stack *stack, const lq_shape_query *query,
+                              double mu, lq_error *error) {
+    *shape = (lq_model_shape){.stack = stack,
+                              .query = *query,
+                              .channels = lq_stack_channels(stack),
+                              .count = lq_model_lobe_count(stack)};
+    shape->lobes = calloc(shape->count * (size_t)shape->channels, sizeof *shape->lobes);
+    lq_status status =
+        shape->lobes ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", shape->count);
+    if (status == LQ_OK && lq_model_kinds[query->model].of_pairs) status = make_grid(shape, error);
+    return status == LQ_OK ? lq_model_shape_aim(shape, mu, error) : status;
+}
+
 void lq_model_shape_free(lq_model_shape *shape) {
+    lq_shape_grid_free(&shape->grid);
     free(shape->lobes);
     *shape = (lq_model_shape){0};
 }
 
-/* Lobe k in a direction on its own side. */
-static double lobe_value(const lq_model_shape *shape, int channel, size_t k, double x, double y, double z) {
-    const lq_shape_lobe *lobe = &shape->lobes[(size_t)channel * shape->count + k];
-    return lobe->scale > 0.0 ? lobe->scale * unscaled(lobe, x, y, z) : 0.0;
+/* ======================================================================================
+ *                                        Values
+ * ====================================================================================== */
+
+double lq_model_shape_lobe(const lq_model_shape *shape, int channel, size_t k, double x, double y, double z) {
+    const size_t at = (size_t)channel * shape->count + k;
+    const lq_shape_lobe *lobe = &shape->lobes[at];
+    double scale = lobe->scale, alpha = lobe->alpha;
+    if (shape->grid.nodes > 0) {
+        const double half = lq_incidence_half(lobe->from, x, z);
+        const lq_grid_lobe other =
+            lq_shape_grid_at(&shape->grid, at, outside(half, index_after(shape, channel, k)));
+        scale = other.scale;
+        alpha = other.alpha;
+    }
+    return scale > 0.0 ? scale * lq_lobe_density(lobe->from, alpha, x, y, z) : 0.0;
 }
 
 static void channel_value(const lq_model_shape *shape, int channel, double x, double y, double z,
@@ -101,11 +150,11 @@ static void channel_value(const lq_model_shape *shape, int channel, double x, do
     const size_t last = shape->count - 1;
     *direct = *rest = 0.0;
     if (z < 0.0) {
-        *(last == 1 ? direct : rest) = lobe_value(shape, channel, last, x, y, -z);
+        *(last == 1 ? direct : rest) = lq_model_shape_lobe(shape, channel, last, x, y, -z);
         return;
     }
-    *direct = lobe_value(shape, channel, 0, x, y, z);
-    for (size_t k = 1; k < last; k++) *rest += lobe_value(shape, channel, k, x, y, z);
+    *direct = lq_model_shape_lobe(shape, channel, 0, x, y, z);
+    for (size_t k = 1; k < last; k++) *rest += lq_model_shape_lobe(shape, channel, k, x, y, z);
 }
 
 void lq_model_shape_value(const lq_model_shape *shape, double x, double y, double z,

@@ -7,21 +7,27 @@
  * with GGX and height-correlated masking, mu_i the cosine that mirrors to the lobe's mean direction (a lobe
  * about the normal has 1) and A the albedo of the same with F = 1, so that its energy over the hemisphere is
  * E. B18 takes lobes without A, which are short of E by what they mask; `masked` has them so.
+ *
+ * b18-symmetric (B18 sec. 6.2) takes for E, alpha and A those of the cosine between light and half vector,
+ * which are the same when light and view change places. Nothing normalises that to any energy: what it sends
+ * altogether is what comes of it (lq_model_shape_light). Transmitted light has the half vector of its
+ * direction mirrored up and the refracted light's, and Snell takes the angle between them outside.
  */
 #ifndef LACQUER_STACK_MODEL_SHAPE_H
 #define LACQUER_STACK_MODEL_SHAPE_H
 
-#include "stack/model.h"
+#include "stack/shape_grid.h"
+#include "stack/shape_lobe.h"
 
 /* Sharper lobes are taken for ones this rough: sums over cells of a fifth of a degree still have their
- * energy, to 2e-4 at mu >= 0.3; nearer the horizon, where lobes are narrower still, they lack more (at 0.15 3
- * %). */
+ * energy, to 2e-4 at mu >= 0.3; nearer the horizon, where lobes are narrower still, they lack more (at 0.15
+ * 3 %). */
 #define LQ_SHAPE_LEAST_ALPHA 1e-2
 
 typedef struct lq_shape_lobe {
     double energy, alpha;
-    double cosine, sine; /* of the incidence that mirrors to its mean */
-    double scale;        /* energy / A */
+    double scale;      /* energy / A */
+    lq_incidence from; /* what mirrors to its mean */
 } lq_shape_lobe;
 
 typedef struct lq_shape_query {
@@ -31,20 +37,29 @@ typedef struct lq_shape_query {
     const lq_model_mapping *mapping; /* that f, made for many shapes; NULL: made for this one */
     bool masked;
     double least_alpha; /* 0: LQ_SHAPE_LEAST_ALPHA */
+    int threads;        /* 0: one per core */
 } lq_shape_query;
 
-/* Plain data but for `lobes`; read alone once made, by any number of threads. */
+/* Read alone once made, by any number of threads. */
 typedef struct lq_model_shape {
+    const lq_stack *stack;
+    lq_shape_query query;
     int channels;
     size_t count;         /* lobes a channel, the last that of transmitted light */
-    lq_shape_lobe *lobes; /* [channel * count + k] */
+    lq_shape_lobe *lobes; /* [channel * count + k], in the direction of a mirror */
+    lq_shape_grid grid;   /* without nodes: lobes are the same in all directions */
     double sharpest; /* the least alpha of a lobe with any energy, before least_alpha; 1 where none has */
 } lq_model_shape;
 
-/* LQ_BAD_INPUT: what lq_model_solve refuses. Free the shape, also after a failure. */
+/* The stack must outlive the shape. LQ_BAD_INPUT: what lq_model_solve refuses, and what the model refuses
+ * besides (model_kind.h). Free the shape, also after a failure. */
 lq_status lq_model_shape_make(lq_model_shape *shape, const lq_stack *stack, const lq_shape_query *query,
                               double mu, lq_error *error);
 void lq_model_shape_free(lq_model_shape *shape);
+
+/* The same for light of another cosine. What all cosines share is kept: the shapes of a symmetric model are
+ * one. */
+lq_status lq_model_shape_aim(lq_model_shape *shape, double mu, lq_error *error);
 
 /* Flux a solid angle in the direction of travel (x, y, z), a unit vector: reflected where z > 0, transmitted
  * into the lowest medium where z < 0. `direct` is what the top interface sends there itself, without light
@@ -52,5 +67,12 @@ void lq_model_shape_free(lq_model_shape *shape);
  * the same where the shape has one channel. */
 void lq_model_shape_value(const lq_model_shape *shape, double x, double y, double z,
                           double direct[LQ_STACK_CHANNELS], double rest[LQ_STACK_CHANNELS]);
+
+/* Lobe k of a channel, in a direction of its own side: z > 0. */
+double lq_model_shape_lobe(const lq_model_shape *shape, int channel, size_t k, double x, double y, double z);
+
+/* Energy and moments of one such lobe and of all of a channel, summed over directions to some 1e-3. */
+lq_stack_lobe lq_model_shape_moments(const lq_model_shape *shape, int channel, size_t k);
+lq_stack_light lq_model_shape_light(const lq_model_shape *shape, int channel);
 
 #endif

@@ -2,6 +2,7 @@
 #include "stack/model_tables.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "system/status.h"
 
@@ -12,12 +13,47 @@ static const double HORIZON = 1e-6;
  * before it shows in a third digit. */
 static const double ENOUGH = 1e-3;
 
-static lq_status look_up(const char *kind_id, const double *point, double *values, lq_error *error) {
-    const lq_kind *kind = lq_kind_find(kind_id, error);
-    const lq_settings settings = lq_settings_default();
+static lq_status compute(const lq_kind *kind, double tolerance, const double *point, double *values,
+                         lq_error *error) {
+    lq_settings settings = lq_settings_default();
     double estimate = 0.0;
-    const lq_status status = kind ? lq_eval(kind, &settings, point, values, &estimate, error) : LQ_BAD_INPUT;
+    settings.tolerance = tolerance;
+    const lq_status status = lq_eval(kind, &settings, point, values, &estimate, error);
     return status == LQ_NOT_CONVERGED && estimate <= ENOUGH ? LQ_OK : status;
+}
+
+static bool recall(const lq_model_memo *memo, const char *id, const double *point, int axes, double *values) {
+    for (size_t i = 0; memo && i < memo->count; i++)
+        if (strcmp(memo->entry[i].kind, id) == 0 &&
+            memcmp(memo->entry[i].point, point, (size_t)axes * sizeof *point) == 0) {
+            memcpy(values, memo->entry[i].values, sizeof memo->entry[i].values);
+            return true;
+        }
+    return false;
+}
+
+static void remember(lq_model_memo *memo, const char *id, const double *point, int axes,
+                     const double *values) {
+    if (!memo || memo->count == sizeof memo->entry / sizeof *memo->entry) return;
+    const size_t i = memo->count++;
+    memo->entry[i].kind = id;
+    memcpy(memo->entry[i].point, point, (size_t)axes * sizeof *point);
+    memcpy(memo->entry[i].values, values, sizeof memo->entry[i].values);
+}
+
+/* All channels of a table: one, or two of `variance`. */
+static lq_status look_up(const lq_model_tables *tables, const char *id, const double *point, double *values,
+                         lq_error *error) {
+    const lq_kind *kind = lq_kind_find(id, error);
+    double all[2] = {0.0, 0.0};
+    if (!kind) return LQ_BAD_INPUT;
+    if (!recall(tables->memo, id, point, kind->axis_count, all)) {
+        const lq_status status = compute(kind, tables->tolerance, point, all, error);
+        if (status != LQ_OK) return status;
+        remember(tables->memo, id, point, kind->axis_count, all);
+    }
+    memcpy(values, all, (size_t)kind->channel_count * sizeof *values);
+    return LQ_OK;
 }
 
 double lq_model_lookup_alpha(const lq_model_tables *tables, double arriving, double alpha) {
@@ -25,8 +61,9 @@ double lq_model_lookup_alpha(const lq_model_tables *tables, double arriving, dou
     return lq_model_roughness(tables->mapping, arriving + lq_model_variance(tables->mapping, alpha));
 }
 
-lq_status lq_model_pass(lq_model_ray ray, double above, double looked_up, double *pass, lq_error *error) {
-    return look_up("tir-pass", (double[]){ray.cosine, looked_up, above / ray.index}, pass, error);
+lq_status lq_model_pass(const lq_model_tables *tables, lq_model_ray ray, double above, double looked_up,
+                        double *pass, lq_error *error) {
+    return look_up(tables, "tir-pass", (double[]){ray.cosine, looked_up, above / ray.index}, pass, error);
 }
 
 /* ======================================================================================
@@ -49,11 +86,12 @@ static double transmitted_variance(const lq_model_tables *tables, double alpha, 
 
 static lq_status energies(const lq_model_tables *tables, double in, double out, double eta, double alpha,
                           double looked_up, lq_model_interface *i, lq_error *error) {
-    lq_status status = look_up("fgd-dielectric", (double[]){in, looked_up, eta}, &i->r12.energy, error);
+    lq_status status =
+        look_up(tables, "fgd-dielectric", (double[]){in, looked_up, eta}, &i->r12.energy, error);
     if (status != LQ_OK || out <= 0.0) return status;
     i->r21.energy = i->r12.energy;
     if (tables->variant == LQ_MODEL_PAPER)
-        status = look_up("fgd-dielectric", (double[]){out, alpha, 1.0 / eta}, &i->r21.energy, error);
+        status = look_up(tables, "fgd-dielectric", (double[]){out, alpha, 1.0 / eta}, &i->r21.energy, error);
     i->t12.energy = 1.0 - i->r12.energy;
     i->t21.energy = 1.0 - i->r21.energy;
     return status;
@@ -75,22 +113,23 @@ lq_status lq_model_conductor(const lq_model_tables *tables, lq_model_ray ray, do
                              double alpha, double looked_up, lq_model_interface *i, lq_error *error) {
     *i = (lq_model_interface){.j12 = 1.0, .j21 = 1.0};
     i->r12.variance = i->r21.variance = lq_model_variance(tables->mapping, alpha);
-    return look_up("fgd", (double[]){ray.cosine, looked_up, n / ray.index, kappa / ray.index}, &i->r12.energy,
-                   error);
+    return look_up(tables, "fgd", (double[]){ray.cosine, looked_up, n / ray.index, kappa / ray.index},
+                   &i->r12.energy, error);
 }
 
 /* ======================================================================================
  *                                     Lambertian base
  * ====================================================================================== */
 
-lq_status lq_model_diffuse(const lq_model_coat *coat, double *energy, double *alpha, lq_error *error) {
+lq_status lq_model_diffuse(const lq_model_tables *tables, const lq_model_coat *coat, double *energy,
+                           double *alpha, lq_error *error) {
     double through, out, back, spread[2];
     const double under[] = {coat->eta, coat->alpha, coat->tau};
-    lq_status status =
-        look_up("transmission", (double[]){coat->mu, coat->alpha, coat->eta, coat->tau}, &through, error);
-    if (status == LQ_OK) status = look_up("diffuse-transmission", under, &out, error);
-    if (status == LQ_OK) status = look_up("diffuse-reflection", under, &back, error);
-    if (status == LQ_OK) status = look_up("variance", under, spread, error);
+    lq_status status = look_up(tables, "transmission",
+                               (double[]){coat->mu, coat->alpha, coat->eta, coat->tau}, &through, error);
+    if (status == LQ_OK) status = look_up(tables, "diffuse-transmission", under, &out, error);
+    if (status == LQ_OK) status = look_up(tables, "diffuse-reflection", under, &back, error);
+    if (status == LQ_OK) status = look_up(tables, "variance", under, spread, error);
     if (status != LQ_OK) return status;
     *energy = through * coat->rho / (1.0 - coat->rho * back) * out;
     *alpha = spread[1];

@@ -15,9 +15,20 @@ typedef struct lq_model_ray {
         index; /* of the mean direction, and of the medium it is in; cosine 0: it goes no further */
 } lq_model_ray;
 
+/* Values looked up, for the channels of a stack, which share most of them. */
+typedef struct lq_model_memo {
+    size_t count;
+    struct {
+        const char *kind;
+        double point[4], values[2];
+    } entry[32]; /* those of more than 32 are looked up again */
+} lq_model_memo;
+
 typedef struct lq_model_tables {
     lq_model_variant variant;
     const lq_model_mapping *mapping;
+    double tolerance;    /* of a table; 0: what its kind has */
+    lq_model_memo *memo; /* of this thread; NULL: none */
 } lq_model_tables;
 
 /* The roughness at which FGD and TIR are looked up: the interface's own, or (released) that of all light that
@@ -25,7 +36,8 @@ typedef struct lq_model_tables {
 double lq_model_lookup_alpha(const lq_model_tables *tables, double arriving, double alpha);
 
 /* The share of 1 - F over the lobe of a base, in a medium below one of index `above`: tir-pass. */
-lq_status lq_model_pass(lq_model_ray ray, double above, double looked_up, double *pass, lq_error *error);
+lq_status lq_model_pass(const lq_model_tables *tables, lq_model_ray ray, double above, double looked_up,
+                        double *pass, lq_error *error);
 
 /* A dielectric into index n; *ray goes on below it. Light that cannot refract there (Snell) leaves no mean
  * direction: t12 is 0 then, as released, and what passes all the same by its facets is lost. */
@@ -39,6 +51,7 @@ lq_status lq_model_conductor(const lq_model_tables *tables, lq_model_ray ray, do
 typedef struct lq_model_coat {
     double mu, eta, alpha, tau, rho;
 } lq_model_coat;
-lq_status lq_model_diffuse(const lq_model_coat *coat, double *energy, double *alpha, lq_error *error);
+lq_status lq_model_diffuse(const lq_model_tables *tables, const lq_model_coat *coat, double *energy,
+                           double *alpha, lq_error *error);
 
 #endif

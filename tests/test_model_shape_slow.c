@@ -10,6 +10,7 @@ enum { COARSE = 180, FINE = 450 };
 
 static const double PI = 3.14159265358979323846;
 
+/* Of a model whose lobes are those of an incidence: such a shape needs its stack no more. */
 static lq_model_shape make(const char *text, const lq_shape_query *query, double mu) {
     lq_stack *stack = parse(text);
     lq_model_shape shape;
@@ -19,7 +20,12 @@ static lq_model_shape make(const char *text, const lq_shape_query *query, double
     return shape;
 }
 
-static const lq_shape_query b18 = {.f = LQ_MODEL_F_B18}, masked_b18 = {.f = LQ_MODEL_F_B18, .masked = true},
+/* As released: that asks for no tables from inside, which take longest. */
+static const lq_shape_query b18 = {.variant = LQ_MODEL_RELEASED, .f = LQ_MODEL_F_B18},
+                            masked_b18 = {.variant = LQ_MODEL_RELEASED, .f = LQ_MODEL_F_B18, .masked = true},
+                            symmetric = {.model = LQ_MODEL_B18_SYMMETRIC,
+                                         .variant = LQ_MODEL_RELEASED,
+                                         .f = LQ_MODEL_F_B18},
                             baked = {.model = LQ_MODEL_BAKED, .f = LQ_MODEL_F_B18};
 
 typedef struct totals {
@@ -185,6 +191,96 @@ static void test_channels_and_ends(void **state) {
         }
 }
 
+/* ======================================================================================
+ *                                    Pairs of directions
+ * ====================================================================================== */
+
+static void aim(lq_model_shape *shape, double mu) {
+    lq_error error = {""};
+    if (lq_model_shape_aim(shape, mu, &error) != LQ_OK) fail_msg("%s", error.text);
+}
+
+static double sine_of(double mu) {
+    return sqrt((1.0 - mu) * (1.0 + mu));
+}
+
+/* In the plane of incidence, towards +x; all lobes. */
+static double value_at(const lq_model_shape *shape, double z) {
+    double direct[3], rest[3];
+    lq_model_shape_value(shape, sine_of(fabs(z)), 0.0, z, direct, rest);
+    return direct[0] + rest[0];
+}
+
+/* Where the half vector is the normal, theta_d is theta_i; on either side. */
+static void test_symmetric_mirrors_as_forward(lq_model_shape *shape, const char *text) {
+    for (double mu = 0.1; mu <= 1.0; mu += 0.3) {
+        lq_model_shape forward = make(text, &b18, mu);
+        aim(shape, mu);
+        assert_near(value_at(shape, mu) / value_at(&forward, mu), 1.0, 5e-3);
+        if (forward.lobes[forward.count - 1].energy > 0.0)
+            assert_near(value_at(shape, -mu) / value_at(&forward, -mu), 1.0, 5e-3);
+        lq_model_shape_free(&forward);
+    }
+}
+
+/* f(i, o) = f(o, i); of b18-forward that is 19 % off here. */
+static void test_symmetric_is_reciprocal(lq_model_shape *shape) {
+    aim(shape, 0.5);
+    const double there = value_at(shape, 0.8) / 0.8;
+    aim(shape, 0.8);
+    const double back = value_at(shape, 0.5) / 0.5;
+    assert_near(there / back, 1.0, 1e-12);
+    lq_model_shape one = make(FROSTED, &b18, 0.5), other = make(FROSTED, &b18, 0.8);
+    assert_true(fabs(value_at(&one, 0.8) / 0.8 / (value_at(&other, 0.5) / 0.5) - 1.0) > 0.1);
+    lq_model_shape_free(&one);
+    lq_model_shape_free(&other);
+}
+
+/* What it sends altogether, by half vectors and by directions. */
+static void test_symmetric_sums(lq_model_shape *shape) {
+    for (double mu = 0.3; mu < 1.0; mu += 0.5) {
+        aim(shape, mu);
+        const lq_stack_light light = lq_model_shape_light(shape, 0);
+        assert_moments(sum_up(shape, 1.0, COARSE), &light.reflected, 2e-3);
+        assert_moments(sum_up(shape, -1.0, COARSE), &light.transmitted, 2e-3);
+    }
+}
+
+static void test_symmetric(void **state) {
+    (void)state;
+    static const char *const stacks[] = {FROSTED, SLAB};
+    for (int i = 0; i < 2; i++) {
+        lq_stack *stack = parse(stacks[i]);
+        lq_error error = {""};
+        lq_model_shape shape;
+        if (lq_model_shape_make(&shape, stack, &symmetric, 1.0, &error) != LQ_OK) fail_msg("%s", error.text);
+        test_symmetric_mirrors_as_forward(&shape, stacks[i]);
+        test_symmetric_sums(&shape);
+        if (i == 0) test_symmetric_is_reciprocal(&shape);
+        assert_int_equal(lq_model_shape_aim(&shape, 2.0, &error), LQ_BAD_INPUT);
+        lq_model_shape_free(&shape);
+        lq_stack_free(stack);
+    }
+}
+
+/* Sums over half vectors are those of lobes that are normalised, at any incidence. */
+static void test_moments_of_lobes(void **state) {
+    (void)state;
+    for (double mu = 0.1; mu <= 1.0; mu += 0.3) {
+        lq_model_shape shape = make(SLAB, &b18, mu);
+        const lq_stack_light expected = light_of(SLAB, &b18, mu), got = lq_model_shape_light(&shape, 0);
+        for (int side = 0; side < 2; side++) {
+            const lq_stack_lobe *a = side ? &got.transmitted : &got.reflected;
+            const lq_stack_lobe *b = side ? &expected.transmitted : &expected.reflected;
+            assert_near(a->energy, b->energy, 1e-3 * b->energy);
+            assert_near(a->sin2, b->sin2, 2e-3);
+            assert_near(a->mean, b->mean, 2e-3);
+            assert_near(a->across, b->across, 1e-3);
+        }
+        lq_model_shape_free(&shape);
+    }
+}
+
 static void test_names_and_refusals(void **state) {
     (void)state;
     lq_model_id id = LQ_MODELS;
@@ -194,7 +290,7 @@ static void test_names_and_refusals(void **state) {
     assert_int_equal(id, LQ_MODEL_BAKED);
     assert_int_equal(lq_model_find("phong", &id, &error), LQ_BAD_INPUT);
     assert_non_null(strstr(error.text, "phong"));
-    assert_non_null(strstr(error.text, "b18-forward, baked"));
+    assert_non_null(strstr(error.text, "b18-forward, b18-symmetric, baked"));
     lq_stack *stack = parse(VARNISHED);
     assert_int_equal(lq_model_shape_make(&shape, stack, &b18, 0.5, &error), LQ_BAD_INPUT);
     assert_non_null(strstr(error.text, "a lambertian base under 2 coats"));
@@ -202,14 +298,22 @@ static void test_names_and_refusals(void **state) {
     assert_int_equal(lq_model_shape_make(&shape, stack, &b18, 1.5, &error), LQ_BAD_INPUT);
     assert_non_null(strstr(error.text, "mu = 1.5"));
     lq_model_shape_free(&shape);
+    assert_int_equal(lq_model_shape_make(&shape, stack, &symmetric, 0.5, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "a lambertian base; accepted by b18-symmetric"));
+    lq_model_shape_free(&shape);
     lq_stack_free(stack);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_energies_and_moments),    cmocka_unit_test(test_baked_is_exact),
-        cmocka_unit_test(test_one_interface_is_direct), cmocka_unit_test(test_masked_lobes_lose_light),
-        cmocka_unit_test(test_least_roughness),         cmocka_unit_test(test_channels_and_ends),
+        cmocka_unit_test(test_energies_and_moments),
+        cmocka_unit_test(test_baked_is_exact),
+        cmocka_unit_test(test_one_interface_is_direct),
+        cmocka_unit_test(test_masked_lobes_lose_light),
+        cmocka_unit_test(test_least_roughness),
+        cmocka_unit_test(test_channels_and_ends),
+        cmocka_unit_test(test_symmetric),
+        cmocka_unit_test(test_moments_of_lobes),
         cmocka_unit_test(test_names_and_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

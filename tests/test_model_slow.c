@@ -243,7 +243,7 @@ static lq_model_interface dielectric(lq_model_variant variant, double mu) {
     lq_model_mapping mapping;
     lq_error error = {""};
     assert_int_equal(lq_model_mapping_make(&mapping, LQ_MODEL_F_B18, &error), LQ_OK);
-    const lq_model_tables tables = {variant, &mapping};
+    const lq_model_tables tables = {.variant = variant, .mapping = &mapping};
     lq_model_ray ray = {mu, 1.0};
     lq_model_interface interface;
     const double looked_up = lq_model_lookup_alpha(&tables, 0.1, 0.2);
@@ -282,7 +282,8 @@ static void test_hard_cases(void **state) {
     for (size_t i = 0; i < sizeof stacks / sizeof *stacks; i++)
         for (int v = 0; v < 8; v++) {
             lq_model_lobe lobes[LOBES];
-            lobes_at(stacks[i], mu[v / 2], (lq_model_variant)(v % 2), v > 0 ? LQ_MODEL_F_B18 : LQ_MODEL_F_EXACT, lobes);
+            lobes_at(stacks[i], mu[v / 2], (lq_model_variant)(v % 2),
+                     v > 0 ? LQ_MODEL_F_B18 : LQ_MODEL_F_EXACT, lobes);
             lq_stack *stack = parse(stacks[i]);
             double sum = 0.0;
             for (size_t k = 0; k < lq_model_lobe_count(stack); k++) {

@@ -34,11 +34,15 @@ run 0 stack "$metal" --model baked --mu 0.6 --format json
 says '"variant": null'
 run 0 stack "$stacks/varnished-base.json" --model baked --mu 0.6 --format csv
 says '^0\.6,0,0\.1157'
+run 0 stack "$metal" --model b18-symmetric --variant released --mu 1,0.6 --format csv
+[ "$(wc -l <out)" -eq 3 ] || fail "not a row a cosine: $(cat out)"
+says "^0\.6,0(,$number){4},,,,$"
 run 0 stack --help
 says '^  baked '
 
 # ------------------------------------------------------------------------------------------- refused
-refused "b18-symmetric.*b18-forward" stack "$slab" --model b18-symmetric
+refused "phong.*b18-forward" stack "$slab" --model phong
+refused 'lambertian base; accepted by b18-symmetric' stack "$stacks/varnished-base.json" --model b18-symmetric
 refused 'lambertian base under 2 coats' stack "$stacks/varnished-base.json" $model
 refused '--paths has no effect with --model' stack "$slab" $model --paths
 refused '--variant has no effect with --model baked' stack "$slab" --model baked --variant paper

@@ -8,6 +8,10 @@ static const lq_model_lobe *lobes_at(const model_result *r, size_t m, int channe
     return r->lobes + (m * (size_t)r->channels + (size_t)channel) * lq_model_lobe_count(r->stack);
 }
 
+static const lq_stack_light *light_at(const model_result *r, size_t m, int channel) {
+    return &r->light[m * (size_t)r->channels + (size_t)channel];
+}
+
 /* The last lobe is what goes through, where anything does. */
 static size_t lobes_shown(const model_result *r) {
     return lq_model_lobe_count(r->stack) - (stack_is_opaque(r->stack) ? 1 : 0);
@@ -36,8 +40,7 @@ void model_print_csv(const model_result *r) {
     printf("%s\n", stack_csv_columns);
     for (size_t m = 0; m < r->query->mu_count; m++)
         for (int c = 0; c < r->channels; c++) {
-            const lq_stack_light light = lq_model_light(r->stack, lobes_at(r, m, c));
-            stack_print_csv_numbers(r->query->mu[m], c, &light, stack_is_opaque(r->stack));
+            stack_print_csv_numbers(r->query->mu[m], c, light_at(r, m, c), stack_is_opaque(r->stack));
             printf("\n");
         }
 }
@@ -57,10 +60,10 @@ static json_t *lobes_json(const model_result *r, const lq_model_lobe *lobes) {
 
 static json_t *row_json(const model_result *r, size_t m, int channel) {
     const lq_model_lobe *lobes = lobes_at(r, m, channel);
-    const lq_stack_light light = lq_model_light(r->stack, lobes);
+    const lq_stack_light *light = light_at(r, m, channel);
     json_t *row = json_pack("{s:f, s:i, s:o, s:o}", "mu", r->query->mu[m], "channel", channel, "reflected",
-                            stack_lobe_json(&light.reflected), "lobes", lobes_json(r, lobes));
-    if (!stack_is_opaque(r->stack)) lq_json_set(&row, "transmitted", stack_lobe_json(&light.transmitted));
+                            stack_lobe_json(&light->reflected), "lobes", lobes_json(r, lobes));
+    if (!stack_is_opaque(r->stack)) lq_json_set(&row, "transmitted", stack_lobe_json(&light->transmitted));
     return row;
 }
 

@@ -117,25 +117,20 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
                                   .variant = (lq_model_variant)request->variant,
                                   .f = (lq_model_f)request->mapping,
                                   .threads = (int)request->threads};
-    const int channels = lq_stack_channels(stack);
     const bool varied = lq_model_kinds[request->model].varied;
+    model_result result = {.stack = stack,
+                           .query = &query,
+                           .model = lq_model_names[request->model],
+                           .variant = varied ? variants[request->variant] : NULL,
+                           .mapping = varied ? mappings[request->mapping] : NULL,
+                           .channels = lq_stack_channels(stack)};
     lq_error error = {""};
-    lq_model_lobe *lobes =
-        calloc(query.mu_count * (size_t)channels * lq_model_lobe_count(stack), sizeof *lobes);
-    if (!lobes) return cli_fail("out of memory");
     cli_progress bar;
     cli_progress_begin(&bar, "model");
-    const lq_status status = lq_model_solve(stack, &query, lobes, &bar.progress, &error);
+    const lq_status status = model_run(&result, &bar.progress, &error);
     cli_progress_end(&bar);
-    const model_result result = {.stack = stack,
-                                 .query = &query,
-                                 .model = lq_model_names[request->model],
-                                 .variant = varied ? variants[request->variant] : NULL,
-                                 .mapping = varied ? mappings[request->mapping] : NULL,
-                                 .channels = channels,
-                                 .lobes = lobes};
     const int code = status == LQ_OK ? print_model(request, &result) : cli_fail_status(status, &error);
-    free(lobes);
+    model_free(&result);
     return code;
 }
 

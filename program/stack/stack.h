@@ -2,7 +2,7 @@
 #ifndef LACQUER_PROGRAM_STACK_STACK_H
 #define LACQUER_PROGRAM_STACK_STACK_H
 
-#include "stack/model.h"
+#include "stack/model_shape.h"
 #include "system/json.h"
 
 /* Light of one query, as lq_stack_solve gives it. */
@@ -20,14 +20,20 @@ int stack_print_json(const stack_result *result);
 
 /* ---- --model ---- */
 
-/* Lobes of one query, as lq_model_solve gives them. */
+/* Lobes of one query and their light, by cosine and channel. */
 typedef struct model_result {
     const lq_stack *stack;
     const lq_model_query *query;
     const char *model, *variant, *mapping; /* as the options name them; NULL: it has none */
     int channels;
-    const lq_model_lobe *lobes;
+    lq_model_lobe *lobes;
+    lq_stack_light *light;
 } model_result;
+
+/* Fill `lobes` and `light`; model_free, also after a failure. Of a model of pairs of directions the lobes
+ * have the energy and the mean that they come to, and the roughness in the direction of a mirror. */
+lq_status model_run(model_result *result, const lq_progress *progress, lq_error *error);
+void model_free(model_result *result);
 
 void model_print_text(const model_result *result);
 void model_print_csv(const model_result *result);
