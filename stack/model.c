@@ -21,7 +21,7 @@ size_t lq_model_lobe_count(const lq_stack *stack) {
 static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model, lq_error *error) {
     const lq_layer *layer = &stack->layers[i];
     if (layer->type == LQ_LAYER_LAMBERTIAN)
-        return i <= 1 || model == LQ_MODEL_BAKED
+        return i <= 1 || !lq_model_kinds[model].one_coat
                    ? LQ_OK
                    : lq_fail(error, LQ_BAD_INPUT,
                              "a lambertian base under %zu coats; accepted in a model: one coat, or none", i);
@@ -31,7 +31,7 @@ static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model,
                    layer->ndf);
 }
 
-static lq_status check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
+lq_status lq_model_check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
     const lq_stack_query light = {.mu = query->mu, .mu_count = query->mu_count};
     lq_status status = lq_stack_solvable(stack, &light, error);
     for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++)
@@ -184,7 +184,7 @@ lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_
                          const lq_progress *progress, lq_error *error) {
     lq_model_query mapped = *query;
     lq_model_mapping own;
-    lq_status status = check(stack, query, error);
+    lq_status status = lq_model_check(stack, query, error);
     if (lq_model_kinds[query->model].of_pairs)
         return lq_fail(error, LQ_BAD_INPUT, "%s has no lobes of one incidence", lq_model_names[query->model]);
     if (!query->mapping) {

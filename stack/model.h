@@ -54,6 +54,9 @@ size_t lq_model_lobe_count(const lq_stack *stack);
 lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
                          const lq_progress *progress, lq_error *error);
 
+/* What that refuses before anything is solved. */
+lq_status lq_model_check(const lq_stack *stack, const lq_model_query *query, lq_error *error);
+
 /* The same as lq_stack_solve has it, from the lobes of one cosine and channel: moments of GGX lobes of these
  * energies and roughnesses, light arriving mirrored to their means. `error` is 0: a model has no estimate. */
 lq_stack_light lq_model_light(const lq_stack *stack, const lq_model_lobe *lobes);

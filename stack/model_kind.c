@@ -5,19 +5,27 @@
 
 #include "system/status.h"
 
-const char *const lq_model_names[LQ_MODELS + 1] = {[LQ_MODEL_B18_FORWARD] = "b18-forward",
-                                                   [LQ_MODEL_B18_SYMMETRIC] = "b18-symmetric",
-                                                   [LQ_MODEL_BAKED] = "baked",
-                                                   [LQ_MODELS] = NULL};
+const char *const lq_model_names[LQ_MODELS + 1] = {
+    [LQ_MODEL_B18_FORWARD] = "b18-forward",
+    [LQ_MODEL_B18_SYMMETRIC] = "b18-symmetric",
+    [LQ_MODEL_WEIDLICH_WILKIE] = "weidlich-wilkie",
+    [LQ_MODEL_WEIDLICH_WILKIE_CORRECTED] = "weidlich-wilkie-corrected",
+    [LQ_MODEL_BAKED] = "baked",
+};
 
 const lq_model_kind lq_model_kinds[LQ_MODELS] = {
-    [LQ_MODEL_B18_FORWARD] = {"the statistical model of Belcour 2018, its lobes those of the incidence",
-                              "GGX interfaces, media that absorb, a lambertian base under one coat or none",
-                              true, false},
-    [LQ_MODEL_B18_SYMMETRIC] = {"the same, its lobes those of the angle to the half vector",
-                                "GGX interfaces, media that absorb, no lambertian base", true, true},
-    [LQ_MODEL_BAKED] = {"what scenes bake: the top's lobe, and all else as one of exact energy and spread",
-                        "GGX interfaces, media that absorb", false, false},
+    [LQ_MODEL_B18_FORWARD] = {.title = "the statistical model of Belcour 2018, lobes of the incidence",
+                              .varied = true,
+                              .one_coat = true},
+    [LQ_MODEL_B18_SYMMETRIC] = {.title = "the same, lobes of the angle to the half vector",
+                                .varied = true,
+                                .one_coat = true,
+                                .of_pairs = true},
+    [LQ_MODEL_WEIDLICH_WILKIE] = {.title = "Weidlich and Wilkie 2007, a ray refracted by the facet",
+                                  .of_pairs = true},
+    [LQ_MODEL_WEIDLICH_WILKIE_CORRECTED] = {.title = "the same, refracted by the surface, 1/eta^2",
+                                            .of_pairs = true},
+    [LQ_MODEL_BAKED] = {.title = "what scenes bake: exact energies, roughness from exact spread"},
 };
 
 lq_status lq_model_find(const char *name, lq_model_id *id, lq_error *error) {

@@ -100,12 +100,96 @@ static lq_status make_grid(lq_model_shape *shape, lq_error *error) {
 }
 
 /* ======================================================================================
- *                                         Both
+ *                                      Rays and BRDFs
+ * ====================================================================================== */
+
+static bool of_rays(const lq_model_shape *shape) {
+    return shape->query.model == LQ_MODEL_WEIDLICH_WILKIE ||
+           shape->query.model == LQ_MODEL_WEIDLICH_WILKIE_CORRECTED;
+}
+
+static bool is_brdf(const lq_model_shape *shape, size_t k) {
+    return of_rays(shape) || (k == 0 && shape->query.first != LQ_FIRST_OF_MODEL);
+}
+
+/* Their lobes have no energy known beforehand, and the roughness of their layers; the last is not there. */
+static lq_status aim_rays(lq_model_shape *shape, double mu, lq_error *error) {
+    if (!(mu >= 0.0 && mu <= 1.0)) return lq_fail(error, LQ_BAD_INPUT, "mu = %g; accepted: 0 <= mu <= 1", mu);
+    for (size_t i = 0; i < shape->count * (size_t)shape->channels; i++) {
+        const size_t k = i % shape->count;
+        if (k + 1 == shape->count) continue;
+        const lq_layer *layer = &shape->stack->layers[k];
+        const double alpha =
+            layer->type == LQ_LAYER_LAMBERTIAN ? 1.0 : layer->alpha_x.value[i / shape->count];
+        shape->lobes[i] = (lq_shape_lobe){.energy = 1.0,
+                                          .alpha = fmax(alpha, least_alpha(&shape->query)),
+                                          .scale = 1.0,
+                                          .from = lq_incidence_of(mu)};
+        shape->sharpest = fmin(shape->sharpest, alpha);
+    }
+    return LQ_OK;
+}
+
+/* Energy of the top interface's BRDF: FGD of one scattering; a dielectric is a conductor without kappa. */
+static lq_status single_energy(const lq_model_shape *shape, int channel, double *energy, lq_error *error) {
+    const lq_layer *top = &shape->stack->layers[0];
+    const lq_shape_lobe *lobe = &shape->lobes[(size_t)channel * shape->count];
+    const lq_kind *kind = lq_kind_find("fgd", error);
+    lq_settings settings = lq_settings_default();
+    double estimate;
+    settings.scattering = LQ_SINGLE;
+    const double kappa = top->type == LQ_LAYER_CONDUCTOR ? top->kappa.value[channel] : 0.0;
+    const double point[] = {lobe->from.cosine, lobe->alpha, top->n.value[channel], kappa};
+    if (!kind) return LQ_BAD_INPUT;
+    const lq_status status = lq_eval(kind, &settings, point, energy, &estimate, error);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status;
+}
+
+/* The first lobe is a BRDF: `scale` is what that is multiplied with. */
+static lq_status aim_first(lq_model_shape *shape, lq_error *error) {
+    lq_status status = LQ_OK;
+    if (of_rays(shape) || shape->query.first == LQ_FIRST_OF_MODEL) return LQ_OK;
+    for (int c = 0; c < shape->channels && status == LQ_OK; c++) {
+        lq_shape_lobe *lobe = &shape->lobes[(size_t)c * shape->count];
+        double energy = 0.0;
+        status = single_energy(shape, c, &energy, error);
+        lobe->scale = energy > 0.0 ? 1.0 : 0.0;
+        if (shape->query.first == LQ_FIRST_SCALED && energy > 0.0) lobe->scale = lobe->energy / energy;
+        else lobe->energy = energy;
+    }
+    return status;
+}
+
+static lq_status check_first(const lq_model_shape *shape, lq_error *error) {
+    if (shape->query.first == LQ_FIRST_OF_MODEL) return LQ_OK;
+    if (of_rays(shape))
+        return lq_fail(error, LQ_BAD_INPUT, "the first lobe of %s is the top interface's BRDF already",
+                       lq_model_names[shape->query.model]);
+    if (shape->stack->layers[0].type != LQ_LAYER_LAMBERTIAN) return LQ_OK;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "the first lobe of a bare lambertian surface is its own; accepted on top: an interface");
+}
+
+/* ======================================================================================
+ *                                          All
  * ====================================================================================== */
 
 lq_status lq_model_shape_aim(lq_model_shape *shape, double mu, lq_error *error) {
     shape->sharpest = 1.0;
-    return shape->grid.nodes > 0 ? aim_grid(shape, mu, error) : aim_lobes(shape, mu, error);
+    const lq_status status = of_rays(shape)          ? aim_rays(shape, mu, error)
+                             : shape->grid.nodes > 0 ? aim_grid(shape, mu, error)
+                                                     : aim_lobes(shape, mu, error);
+    return status == LQ_OK ? aim_first(shape, error) : status;
+}
+
+/* What `query` does not say of any stack: lobes of pairs of directions, and what they refuse. */
+static lq_status prepare(lq_model_shape *shape, double mu, lq_error *error) {
+    lq_status status = check_first(shape, error);
+    if (status != LQ_OK) return status;
+    if (!of_rays(shape)) return lq_model_kinds[shape->query.model].of_pairs ? make_grid(shape, error) : LQ_OK;
+    const lq_model_query query = {.mu = &mu, .mu_count = 1, .model = shape->query.model};
+    status = lq_model_check(shape->stack, &query, error);
+    return status == LQ_OK ? lq_weidlich_check(shape->stack, error) : status;
 }
 
 lq_status lq_model_shape_make(lq_model_shape *shape, const lq_stack *stack, const lq_shape_query *query,
@@ -113,11 +197,14 @@ lq_status lq_model_shape_make(lq_model_shape *shape, const lq_stack *stack, cons
     *shape = (lq_model_shape){.stack = stack,
                               .query = *query,
                               .channels = lq_stack_channels(stack),
-                              .count = lq_model_lobe_count(stack)};
+                              .count = lq_model_lobe_count(stack),
+                              .rays = {.stack = stack,
+                                       .corrected = query->model == LQ_MODEL_WEIDLICH_WILKIE_CORRECTED,
+                                       .least_alpha = least_alpha(query)}};
     shape->lobes = calloc(shape->count * (size_t)shape->channels, sizeof *shape->lobes);
     lq_status status =
         shape->lobes ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", shape->count);
-    if (status == LQ_OK && lq_model_kinds[query->model].of_pairs) status = make_grid(shape, error);
+    if (status == LQ_OK) status = prepare(shape, mu, error);
     return status == LQ_OK ? lq_model_shape_aim(shape, mu, error) : status;
 }
 
@@ -135,6 +222,8 @@ double lq_model_shape_lobe(const lq_model_shape *shape, int channel, size_t k, d
     const size_t at = (size_t)channel * shape->count + k;
     const lq_shape_lobe *lobe = &shape->lobes[at];
     double scale = lobe->scale, alpha = lobe->alpha;
+    if (!(scale > 0.0)) return 0.0;
+    if (is_brdf(shape, k)) return scale * lq_weidlich_value(&shape->rays, channel, k, lobe->from, x, y, z);
     if (shape->grid.nodes > 0) {
         const double half = lq_incidence_half(lobe->from, x, z);
         const lq_grid_lobe other =

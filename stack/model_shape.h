@@ -12,12 +12,20 @@
  * which are the same when light and view change places. Nothing normalises that to any energy: what it sends
  * altogether is what comes of it (lq_model_shape_light). Transmitted light has the half vector of its
  * direction mirrored up and the refracted light's, and Snell takes the angle between them outside.
+ *
+ * weidlich-wilkie and weidlich-wilkie-corrected are in weidlich.h.
+ *
+ * The first lobe of any model can be the BRDF of the top interface itself, F(h) D G2 / (4 mu_i mu_o), instead
+ * (Ba19 eq. 6): of one scattering, which loses what it masks, or scaled to what the model's own lobe has.
  */
 #ifndef LACQUER_STACK_MODEL_SHAPE_H
 #define LACQUER_STACK_MODEL_SHAPE_H
 
 #include "stack/shape_grid.h"
-#include "stack/shape_lobe.h"
+#include "stack/weidlich.h"
+
+/* The first lobe: the model's, the top interface's BRDF, or that with the energy of the model's. */
+typedef enum lq_first_lobe { LQ_FIRST_OF_MODEL, LQ_FIRST_EXACT, LQ_FIRST_SCALED } lq_first_lobe;
 
 /* Sharper lobes are taken for ones this rough: sums over cells of a fifth of a degree still have their
  * energy, to 2e-4 at mu >= 0.3; nearer the horizon, where lobes are narrower still, they lack more (at 0.15
@@ -36,6 +44,7 @@ typedef struct lq_shape_query {
     lq_model_f f;
     const lq_model_mapping *mapping; /* that f, made for many shapes; NULL: made for this one */
     bool masked;
+    lq_first_lobe first;
     double least_alpha; /* 0: LQ_SHAPE_LEAST_ALPHA */
     int threads;        /* 0: one per core */
 } lq_shape_query;
@@ -48,6 +57,7 @@ typedef struct lq_model_shape {
     size_t count;         /* lobes a channel, the last that of transmitted light */
     lq_shape_lobe *lobes; /* [channel * count + k], in the direction of a mirror */
     lq_shape_grid grid;   /* without nodes: lobes are the same in all directions */
+    lq_weidlich rays;     /* of a model of rays, and of a first lobe that is a BRDF */
     double sharpest; /* the least alpha of a lobe with any energy, before least_alpha; 1 where none has */
 } lq_model_shape;
 

@@ -37,6 +37,10 @@ says '^0\.6,0,0\.1157'
 run 0 stack "$metal" --model b18-symmetric --variant released --mu 1,0.6 --format csv
 [ "$(wc -l <out)" -eq 3 ] || fail "not a row a cosine: $(cat out)"
 says "^0\.6,0,$number,(,$number){3},,,,$"
+run 0 stack "$metal" --model weidlich-wilkie-corrected --mu 0.6 --format csv
+says '^0\.6,0,0\.7931'
+run 0 stack "$metal" --model b18-forward --variant released --first exact --mu 0.6 --format json
+says '"first": "exact"'
 run 0 stack --help
 says '^  baked '
 
@@ -46,6 +50,8 @@ refused 'lambertian base; accepted by b18-symmetric' stack "$stacks/varnished-ba
 refused 'lambertian base under 2 coats' stack "$stacks/varnished-base.json" $model
 refused '--paths has no effect with --model' stack "$slab" $model --paths
 refused '--variant has no effect with --model baked' stack "$slab" --model baked --variant paper
+refused '--first has no effect with --model weidlich-wilkie' stack "$metal" --model weidlich-wilkie --first exact
+refused 'the last layer lets light through' stack "$slab" --model weidlich-wilkie
 refused '--mapping has no effect without --model' stack "$slab" --mapping b18
 echo '{"layers": [{"conductor": {"n": 1, "kappa": 1, "alpha": {"x": 0.3, "y": 0.1}}}]}' >a.json
 refused 'layer 1 is anisotropic' stack a.json $model

@@ -24,13 +24,17 @@ static void read_shape(const lq_model_shape *shape, int channel, const lq_model_
     *light = lq_model_shape_light(shape, channel);
 }
 
-static lq_status run_pairs(model_result *r, lq_error *error) {
+static lq_status run_shape(model_result *r, lq_error *error) {
     const lq_model_query *q = r->query;
     lq_model_mapping mapping;
     lq_model_shape shape = {0};
     lq_status status = lq_model_mapping_make(&mapping, q->f, error);
-    const lq_shape_query query = {
-        .model = q->model, .variant = q->variant, .f = q->f, .mapping = &mapping, .threads = q->threads};
+    const lq_shape_query query = {.model = q->model,
+                                  .variant = q->variant,
+                                  .f = q->f,
+                                  .mapping = &mapping,
+                                  .first = r->first,
+                                  .threads = q->threads};
     if (status == LQ_OK) status = lq_model_shape_make(&shape, r->stack, &query, q->mu[0], error);
     for (size_t m = 0; m < q->mu_count && status == LQ_OK; m++) {
         status = lq_model_shape_aim(&shape, q->mu[m], error);
@@ -51,7 +55,9 @@ lq_status model_run(model_result *r, const lq_progress *progress, lq_error *erro
         snprintf(error->text, sizeof error->text, "out of memory");
         return LQ_NO_MEMORY;
     }
-    return lq_model_kinds[r->query->model].of_pairs ? run_pairs(r, error) : run_lobes(r, progress, error);
+    return lq_model_kinds[r->query->model].of_pairs || r->first != LQ_FIRST_OF_MODEL
+               ? run_shape(r, error)
+               : run_lobes(r, progress, error);
 }
 
 void model_free(model_result *r) {

@@ -18,9 +18,10 @@ enum {
     OPTION_TRUST,
     OPTION_MODEL,
     OPTION_VARIANT,
-    OPTION_MAPPING
+    OPTION_MAPPING,
+    OPTION_FIRST
 };
-enum { EXACT = 1, VARIED = 2, OTHER = 4 };
+enum { EXACT = 1, VARIED = 2, LOBES = 4, RAYS = 8 };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 
 typedef struct stack_request {
@@ -31,12 +32,13 @@ typedef struct stack_request {
     size_t threads;
     double tolerance;
     bool trusted;
-    int model, variant, mapping;
+    int model, variant, mapping, first;
 } stack_request;
 
 static const char *const formats[] = {"text", "csv", "json", NULL};
-static const char *const variants[] = {"paper", "released", NULL}; /* as lq_model_variant */
-static const char *const mappings[] = {"exact", "b18", NULL};      /* as lq_model_f */
+static const char *const variants[] = {"paper", "released", NULL};      /* as lq_model_variant */
+static const char *const firsts[] = {"model", "exact", "scaled", NULL}; /* as lq_first_lobe */
+static const char *const mappings[] = {"exact", "b18", NULL};           /* as lq_model_f */
 
 static const cli_option options[] = {
     CLI_MU_OPTION(stack_request, 0),
@@ -48,6 +50,10 @@ static const cli_option options[] = {
      CLI_CHOICE(stack_request, variant, variants), .modes = VARIED},
     {OPTION_MAPPING, "mapping", "exact|b18", "f of roughness: computed, or B18's fit of it (default exact)",
      CLI_CHOICE(stack_request, mapping, mappings), .modes = VARIED},
+    {OPTION_FIRST, "first", "model|exact|scaled",
+     "the first lobe: the model's, the top interface's BRDF of one scattering (Ba19 eq. 6), or that with the "
+     "energy of the model's (default model)",
+     CLI_CHOICE(stack_request, first, firsts), .modes = VARIED | LOBES},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
@@ -103,6 +109,12 @@ static int solve(const stack_request *request, const lq_stack *stack) {
     return code;
 }
 
+static unsigned mode_of(const stack_request *request) {
+    if (request->model < 0) return EXACT;
+    const lq_model_kind *kind = &lq_model_kinds[request->model];
+    return kind->varied ? VARIED : kind->of_pairs ? RAYS : LOBES;
+}
+
 static int print_model(const stack_request *request, const model_result *result) {
     if (request->format == FORMAT_JSON) return model_print_json(result);
     if (request->format == FORMAT_CSV) model_print_csv(result);
@@ -123,6 +135,8 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
                            .model = lq_model_names[request->model],
                            .variant = varied ? variants[request->variant] : NULL,
                            .mapping = varied ? mappings[request->mapping] : NULL,
+                           .first_name = mode_of(request) == RAYS ? NULL : firsts[request->first],
+                           .first = (lq_first_lobe)request->first,
                            .channels = lq_stack_channels(stack)};
     lq_error error = {""};
     cli_progress bar;
@@ -132,11 +146,6 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
     const int code = status == LQ_OK ? print_model(request, &result) : cli_fail_status(status, &error);
     model_free(&result);
     return code;
-}
-
-static unsigned mode_of(const stack_request *request) {
-    if (request->model < 0) return EXACT;
-    return lq_model_kinds[request->model].varied ? VARIED : OTHER;
 }
 
 static int run(int argc, char **argv) {

@@ -24,14 +24,16 @@ int stack_print_json(const stack_result *result);
 typedef struct model_result {
     const lq_stack *stack;
     const lq_model_query *query;
-    const char *model, *variant, *mapping; /* as the options name them; NULL: it has none */
+    const char *model, *variant, *mapping, *first_name; /* as the options name them; NULL: it has none */
+    lq_first_lobe first;
     int channels;
     lq_model_lobe *lobes;
     lq_stack_light *light;
 } model_result;
 
-/* Fill `lobes` and `light`; model_free, also after a failure. Of a model of pairs of directions the lobes
- * have the energy and the mean that they come to, and the roughness in the direction of a mirror. */
+/* Fill `lobes` and `light`; model_free, also after a failure. Where some lobe is not a GGX lobe of the
+ * incidence, all have the energy and the mean that they come to, and the roughness in the direction of a
+ * mirror. */
 lq_status model_run(model_result *result, const lq_progress *progress, lq_error *error);
 void model_free(model_result *result);
 
