@@ -12,12 +12,6 @@ void lq_model_reflect_back(lq_model_sum *sum, double pass) {
     sum->ti0.energy *= pass;
 }
 
-void lq_model_cross(lq_model_sum *sum, double transmittance) {
-    sum->t0i.energy *= transmittance;
-    sum->ti0.energy *= transmittance;
-    sum->ri0.energy *= transmittance * transmittance;
-}
-
 /* Two lobes taken for one: energies add, and variances by energy (eq. 38). */
 static lq_flow blend(lq_flow a, lq_flow b) {
     const double energy = a.energy + b.energy;
@@ -53,4 +47,10 @@ lq_flow lq_model_add(lq_model_sum *s, const lq_model_interface *i) {
     s->j0i *= i->j12;
     s->ji0 *= i->j21;
     return lobe;
+}
+
+/* An interface that reflects nothing and bends nothing. */
+void lq_model_cross(lq_model_sum *sum, lq_flow crossing) {
+    const lq_model_interface medium = {.t12 = crossing, .t21 = crossing, .j12 = 1.0, .j21 = 1.0};
+    lq_model_add(sum, &medium);
 }

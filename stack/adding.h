@@ -29,8 +29,8 @@ lq_model_sum lq_model_nothing(void);
  */
 void lq_model_reflect_back(lq_model_sum *sum, double pass);
 
-/* A medium below all: what a crossing leaves (eq. 15, 22). */
-void lq_model_cross(lq_model_sum *sum, double transmittance);
+/* A medium below all: what a crossing leaves, and how far it spreads it (eq. 15-24). */
+void lq_model_cross(lq_model_sum *sum, lq_flow crossing);
 
 /* One more interface; the lobe that it adds to what comes back. */
 lq_flow lq_model_add(lq_model_sum *sum, const lq_model_interface *interface);

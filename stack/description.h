@@ -46,4 +46,9 @@ bool lq_medium_scatters(const lq_medium *medium);
  * base. */
 lq_status lq_stack_solvable(const lq_stack *stack, const lq_stack_query *query, lq_error *error);
 
+/* The same but for what is solved by no more than a model. */
+enum { LQ_SOLVED_SCATTERING = 1, LQ_SOLVED_ANISOTROPIC = 2 };
+lq_status lq_stack_solvable_by(const lq_stack *stack, const lq_stack_query *query, unsigned solved,
+                               lq_error *error);
+
 #endif

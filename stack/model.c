@@ -18,14 +18,34 @@ size_t lq_model_lobe_count(const lq_stack *stack) {
  *                                     What is refused
  * ====================================================================================== */
 
+static lq_status check_base(size_t coats, lq_model_id model, lq_error *error) {
+    if (coats <= 1 || !lq_model_kinds[model].one_coat) return LQ_OK;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "a lambertian base under %zu coats; accepted in a model: one coat, or none", coats);
+}
+
+/* Forward scattering is a lobe of its own; what goes back is another, which the model does not have. */
+static lq_status check_medium(const lq_layer *layer, const lq_layer *below, size_t number, lq_error *error) {
+    if (layer->type != LQ_LAYER_DIELECTRIC || !lq_medium_scatters(&layer->medium)) return LQ_OK;
+    if (below && below->type == LQ_LAYER_LAMBERTIAN)
+        return lq_fail(
+            error, LQ_BAD_INPUT,
+            "layer %zu has a medium that scatters, over a lambertian base; accepted there: tau, or "
+            "sigma_s = 0",
+            number);
+    for (int c = 0; c < LQ_STACK_CHANNELS; c++)
+        if (!(layer->medium.g.value[c] > 0.0))
+            return lq_fail(error, LQ_BAD_INPUT,
+                           "layer %zu scatters with g = %g; accepted in a model: 0 < g < 1", number,
+                           layer->medium.g.value[c]);
+    return LQ_OK;
+}
+
 static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model, lq_error *error) {
     const lq_layer *layer = &stack->layers[i];
-    if (layer->type == LQ_LAYER_LAMBERTIAN)
-        return i <= 1 || !lq_model_kinds[model].one_coat
-                   ? LQ_OK
-                   : lq_fail(error, LQ_BAD_INPUT,
-                             "a lambertian base under %zu coats; accepted in a model: one coat, or none", i);
-    if (strcmp(layer->ndf, "ggx") == 0) return LQ_OK;
+    if (layer->type == LQ_LAYER_LAMBERTIAN) return check_base(i, model, error);
+    if (strcmp(layer->ndf, "ggx") == 0)
+        return check_medium(layer, i + 1 < stack->layer_count ? layer + 1 : NULL, i + 1, error);
     return lq_fail(error, LQ_BAD_INPUT,
                    "layer %zu has the NDF %.60s; accepted: ggx, as the lobes of the model", i + 1,
                    layer->ndf);
@@ -33,7 +53,8 @@ static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model,
 
 lq_status lq_model_check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
     const lq_stack_query light = {.mu = query->mu, .mu_count = query->mu_count};
-    lq_status status = lq_stack_solvable(stack, &light, error);
+    lq_status status = lq_stack_solvable_by(
+        stack, &light, lq_model_kinds[query->model].scattering ? LQ_SOLVED_SCATTERING : 0, error);
     for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++)
         status = check_layer(stack, i, query->model, error);
     return status;
@@ -73,15 +94,18 @@ static lq_status interface_of(passage *p, const lq_layer *layer, double looked_u
                : lq_model_conductor(p->tables, p->ray, n, layer->kappa.value[c], alpha, looked_up, i, error);
 }
 
+static void cross(passage *p, const lq_medium *medium) {
+    lq_model_cross(&p->sum, lq_model_medium(p->tables, medium, p->channel, p->ray.cosine));
+}
+
 /* The medium below interface `at`, for the light of the one below that: first what is totally reflected at
  * its upper side, which then crosses like all else. */
 static lq_status go_down(passage *p, size_t at, double looked_up, lq_error *error) {
     double pass;
-    const double tau = lq_medium_transmittance(&p->stack->layers[at].medium, p->channel);
     const lq_status status = lq_model_pass(p->tables, p->ray, p->above, looked_up, &pass, error);
     if (status != LQ_OK) return status;
     lq_model_reflect_back(&p->sum, pass);
-    lq_model_cross(&p->sum, pow(tau, 1.0 / p->ray.cosine));
+    cross(p, &p->stack->layers[at].medium);
     return LQ_OK;
 }
 
@@ -117,7 +141,7 @@ static lq_status add_diffuse(passage *p, size_t at, lq_model_lobe *lobe, lq_erro
 static void go_through(passage *p, size_t last, lq_model_lobe *lobe) {
     const lq_layer *layer = &p->stack->layers[last];
     if (layer->type != LQ_LAYER_DIELECTRIC || !(p->sum.t0i.energy > 0.0)) return;
-    lq_model_cross(&p->sum, pow(lq_medium_transmittance(&layer->medium, p->channel), 1.0 / p->ray.cosine));
+    cross(p, &layer->medium);
     *lobe = mirrored(p, p->sum.t0i);
     lobe->mean = lobe->energy > 0.0 ? sine_of(p->ray.cosine) : 0.0;
 }

@@ -10,7 +10,10 @@
  *                        paper (default)                        released
  *     r21, t21           looked up from inside                  r12, t12
  *     FGD, TIR           at the interface's own alpha           at f^-1(variance so far + f(alpha))
+ *     media that scatter what is scattered is spread           all that crosses
  *     transmitted alpha  s of the refracted cosines (eq. 10)    s as at normal incidence
+ *
+ * Media scatter forward, once (0 < g < 1); what goes back or is scattered again is lost.
  *
  * A Lambertian base is D22's lobe, under one coat or none. Below an interface that the mean direction does
  * not refract into there is no light.

@@ -16,10 +16,12 @@ const char *const lq_model_names[LQ_MODELS + 1] = {
 const lq_model_kind lq_model_kinds[LQ_MODELS] = {
     [LQ_MODEL_B18_FORWARD] = {.title = "the statistical model of Belcour 2018, lobes of the incidence",
                               .varied = true,
-                              .one_coat = true},
+                              .one_coat = true,
+                              .scattering = true},
     [LQ_MODEL_B18_SYMMETRIC] = {.title = "the same, lobes of the angle to the half vector",
                                 .varied = true,
                                 .one_coat = true,
+                                .scattering = true,
                                 .of_pairs = true},
     [LQ_MODEL_WEIDLICH_WILKIE] = {.title = "Weidlich and Wilkie 2007, a ray refracted by the facet",
                                   .of_pairs = true},

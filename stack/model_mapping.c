@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+#include "fit/phase.h"
+#include "microfacet/lobe.h"
+
 static const double POLE = 1e100, EXPONENT = 1.1;
 
 lq_status lq_model_mapping_make(lq_model_mapping *mapping, lq_model_f f, lq_error *error) {
@@ -17,6 +20,11 @@ double lq_model_variance(const lq_model_mapping *mapping, double alpha) {
     if (mapping->f == LQ_MODEL_F_EXACT) return fmin(lq_curve_f(&mapping->curve, alpha), POLE);
     const double power = pow(alpha, EXPONENT);
     return fmin(power / (1.0 - power), POLE);
+}
+
+double lq_model_phase(const lq_model_mapping *mapping, double g) {
+    if (mapping->f == LQ_MODEL_F_B18) return pow((1.0 - g) / g, 0.8) / (1.0 + g);
+    return lq_model_variance(mapping, lq_lobe_roughness(mapping->curve.ndf, lq_phase_variance(g, NULL)));
 }
 
 double lq_model_roughness(const lq_model_mapping *mapping, double variance) {

@@ -21,6 +21,11 @@ lq_status lq_model_mapping_make(lq_model_mapping *mapping, lq_model_f f, lq_erro
 /* Finite for every alpha, so that no energy 0 meets an infinity: the pole at 1, and what lies beyond, is a
  * large number. */
 double lq_model_variance(const lq_model_mapping *mapping, double alpha);
+/* sigma_g, what a Henyey-Greenstein phase function of mean cosine g in (0,1) spreads (B18 eq. 21): f of the
+ * lobe with the same E[sin^2 theta] over its forward hemisphere, or B18's fit of that, ((1 - g) / g)^0.8 / (1
+ * + g). */
+double lq_model_phase(const lq_model_mapping *mapping, double g);
+
 /* 1 for that number and above. */
 double lq_model_roughness(const lq_model_mapping *mapping, double variance);
 

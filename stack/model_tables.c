@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "stack/description.h"
 #include "system/status.h"
 
 /* Below this the Jacobian is not asked: light along the horizon has no disc to be projected on. */
@@ -115,6 +116,23 @@ lq_status lq_model_conductor(const lq_model_tables *tables, lq_model_ray ray, do
     i->r12.variance = i->r21.variance = lq_model_variance(tables->mapping, alpha);
     return look_up(tables, "fgd", (double[]){ray.cosine, looked_up, n / ray.index, kappa / ray.index},
                    &i->r12.energy, error);
+}
+
+/* ======================================================================================
+ *                                          Media
+ * ====================================================================================== */
+
+/* What is not scattered, e^-T, and what is once, S e^-T, of optical depths T = (sigma_a + sigma_s) h / mu and
+ * S = sigma_s h / mu (B18 eq. 15, 22). The second is spread by sigma_g (eq. 24), and both are taken for one
+ * lobe as eq. 38 has it. The released code spreads the first, too. */
+lq_flow lq_model_medium(const lq_model_tables *tables, const lq_medium *medium, int channel, double cosine) {
+    const double direct = pow(lq_medium_transmittance(medium, channel), 1.0 / cosine);
+    const double once =
+        medium->by_sigma ? medium->sigma_s.value[channel] * medium->depth.value[channel] / cosine : 0.0;
+    if (!(once > 0.0)) return (lq_flow){direct, 0.0};
+    const double spread = lq_model_phase(tables->mapping, medium->g.value[channel]);
+    return (lq_flow){direct * exp(-once) * (1.0 + once),
+                     tables->variant == LQ_MODEL_PAPER ? spread * once / (1.0 + once) : spread};
 }
 
 /* ======================================================================================

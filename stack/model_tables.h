@@ -46,6 +46,9 @@ lq_status lq_model_dielectric(const lq_model_tables *tables, lq_model_ray *ray, 
 lq_status lq_model_conductor(const lq_model_tables *tables, lq_model_ray ray, double n, double kappa,
                              double alpha, double looked_up, lq_model_interface *interface, lq_error *error);
 
+/* One crossing of a medium at a cosine. */
+lq_flow lq_model_medium(const lq_model_tables *tables, const lq_medium *medium, int channel, double cosine);
+
 /* The lobe of a Lambertian base below one coat, D22 eq. 3: T01 rho / (1 - rho R10) T10, about the normal.
  * `energy` and `alpha`: of its roughness (D22 sec. 3.3). */
 typedef struct lq_model_coat {

@@ -2,6 +2,7 @@
  * variants. */
 #include <math.h>
 
+#include "fit/phase.h"
 #include "microfacet/fresnel.h"
 #include "microfacet/lobe.h"
 #include "stack/model.h"
@@ -236,6 +237,63 @@ static void test_moments_of_a_lobe(void **state) {
 }
 
 /* ======================================================================================
+ *                                     Media that scatter
+ * ====================================================================================== */
+
+/* A mirror under such a medium, without an interface: two crossings. */
+static void test_two_crossings(void **state) {
+    (void)state;
+    const char *text =
+        LAYERS("{\"dielectric\": {\"n\": 1, \"alpha\": 0}, \"medium\": {\"sigma_a\": 0.2, \"sigma_s\": 0.5, "
+               "\"depth\": 0.4, \"g\": 0.9}}," CONDUCTOR(0, 1, 0));
+    for (double mu = 0.25; mu <= 1.0; mu += 0.25)
+        for (lq_model_variant v = LQ_MODEL_PAPER; v <= LQ_MODEL_RELEASED; v++) {
+            lq_model_lobe lobes[LOBES];
+            lobes_at(text, mu, v, LQ_MODEL_F_B18, lobes);
+            const double once = 0.2 / mu, spread = pow(0.1 / 0.9, 0.8) / 1.9;
+            const double crossing = (1.0 + once) * exp(-once - 0.08 / mu);
+            assert_near(lobes[1].energy, crossing * crossing, 1e-6);
+            const double share = v == LQ_MODEL_PAPER ? once / (1.0 + once) : 1.0;
+            assert_near(lobes[1].variance, 2.0 * spread * share, 1e-12);
+        }
+}
+
+/* Without scattering, a medium said by sigma is one said by tau, in both variants. */
+static void test_medium_without_scattering(void **state) {
+    (void)state;
+    const char *sigma = LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.2}, \"medium\": {\"sigma_a\": 1, "
+                               "\"depth\": 0.5, \"g\": 0.9}}," CONDUCTOR(0.2, 3.9, 0.05));
+    char tau[200];
+    snprintf(tau, sizeof tau,
+             LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.2}, \"medium\": {\"tau\": %.17g}}," CONDUCTOR(
+                 0.2, 3.9, 0.05)),
+             exp(-0.5));
+    for (lq_model_variant v = LQ_MODEL_PAPER; v <= LQ_MODEL_RELEASED; v++) {
+        lq_model_lobe one[LOBES], other[LOBES];
+        lobes_at(sigma, 0.6, v, LQ_MODEL_F_B18, one);
+        lobes_at(tau, 0.6, v, LQ_MODEL_F_B18, other);
+        assert_near(one[1].energy, other[1].energy, 1e-14);
+        assert_near(one[1].variance, other[1].variance, 1e-14);
+    }
+}
+
+/* sigma_g: B18's fit at its printed values, and the exact one spreads as its phase function. */
+static void test_spread_of_a_phase_function(void **state) {
+    (void)state;
+    static const double g[] = {0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99};
+    static const double fit[] = {5.27, 1.52, 0.667, 0.299, 0.183, 0.091, 0.0486, 0.0127};
+    lq_model_mapping exact, b18_fit;
+    lq_error error = {""};
+    assert_int_equal(lq_model_mapping_make(&exact, LQ_MODEL_F_EXACT, &error), LQ_OK);
+    assert_int_equal(lq_model_mapping_make(&b18_fit, LQ_MODEL_F_B18, &error), LQ_OK);
+    for (int i = 0; i < 8; i++) {
+        const double alpha = lq_model_roughness(&exact, lq_model_phase(&exact, g[i]));
+        assert_near(lq_lobe_variance(lq_ndf_find("ggx"), alpha), lq_phase_variance(g[i], NULL), 1e-6);
+        assert_near(lq_model_phase(&b18_fit, g[i]), fit[i], 0.006 * fit[i]);
+    }
+}
+
+/* ======================================================================================
  *                                        Variants
  * ====================================================================================== */
 
@@ -320,8 +378,12 @@ static void test_refused(void **state) {
         {LAYERS("{\"conductor\": {\"n\": 1, \"kappa\": 1, \"alpha\": {\"x\": 0.3, \"y\": 0.1}}}"),
          "layer 1 is anisotropic"},
         {LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": 0}, \"medium\": {\"sigma_a\": 0, \"sigma_s\": 1, "
-                "\"depth\": 1, \"g\": 0.5}}"),
-         "layer 1 has a medium that scatters"},
+                "\"depth\": 1, \"g\": -0.5}}"),
+         "layer 1 scatters with g = -0.5"},
+        {LAYERS(
+             "{\"dielectric\": {\"n\": 1.5, \"alpha\": 0}, \"medium\": {\"sigma_s\": 1, \"depth\": 1, \"g\": "
+             "0.5}}," LAMBERTIAN(1)),
+         "layer 1 has a medium that scatters, over a lambertian base"},
         {LAYERS("{\"dielectric\": {\"n\": 1.5, \"alpha\": 0.1, \"ndf\": \"beckmann\"}}"),
          "layer 1 has the NDF beckmann"},
         {VARNISHED, "a lambertian base under 2 coats"}};
@@ -350,6 +412,9 @@ int main(void) {
         cmocka_unit_test(test_variance_of_a_coat),
         cmocka_unit_test(test_variances_of_a_second_interface),
         cmocka_unit_test(test_moments_of_a_lobe),
+        cmocka_unit_test(test_two_crossings),
+        cmocka_unit_test(test_medium_without_scattering),
+        cmocka_unit_test(test_spread_of_a_phase_function),
         cmocka_unit_test(test_released_departs),
         cmocka_unit_test(test_hard_cases),
         cmocka_unit_test(test_channels_and_threads),
