@@ -53,8 +53,10 @@ static lq_status check_layer(const lq_stack *stack, size_t i, lq_model_id model,
 
 lq_status lq_model_check(const lq_stack *stack, const lq_model_query *query, lq_error *error) {
     const lq_stack_query light = {.mu = query->mu, .mu_count = query->mu_count};
-    lq_status status = lq_stack_solvable_by(
-        stack, &light, lq_model_kinds[query->model].scattering ? LQ_SOLVED_SCATTERING : 0, error);
+    const lq_model_kind *kind = &lq_model_kinds[query->model];
+    const unsigned solved =
+        (kind->scattering ? LQ_SOLVED_SCATTERING : 0U) | (kind->anisotropic ? LQ_SOLVED_ANISOTROPIC : 0U);
+    lq_status status = lq_stack_solvable_by(stack, &light, solved, error);
     for (size_t i = 0; i < stack->layer_count && status == LQ_OK; i++)
         status = check_layer(stack, i, query->model, error);
     return status;
@@ -209,8 +211,9 @@ lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_
     lq_model_query mapped = *query;
     lq_model_mapping own;
     lq_status status = lq_model_check(stack, query, error);
-    if (lq_model_kinds[query->model].of_pairs)
-        return lq_fail(error, LQ_BAD_INPUT, "%s has no lobes of one incidence", lq_model_names[query->model]);
+    if (lq_model_kinds[query->model].of_pairs || lq_model_kinds[query->model].anisotropic)
+        return lq_fail(error, LQ_BAD_INPUT, "%s has no lobes that one roughness describes",
+                       lq_model_names[query->model]);
     if (!query->mapping) {
         mapped.mapping = &own;
         if (status == LQ_OK) status = lq_model_mapping_make(&own, query->f, error);

@@ -9,6 +9,7 @@
 typedef enum lq_model_id {
     LQ_MODEL_B18_FORWARD,
     LQ_MODEL_B18_SYMMETRIC,
+    LQ_MODEL_Y19,
     LQ_MODEL_WEIDLICH_WILKIE,
     LQ_MODEL_WEIDLICH_WILKIE_CORRECTED,
     LQ_MODEL_BAKED,
@@ -17,10 +18,11 @@ typedef enum lq_model_id {
 
 typedef struct lq_model_kind {
     const char *title;
-    bool varied;     /* has variants and takes a mapping (model.h) */
-    bool one_coat;   /* over a Lambertian base, and no more */
-    bool scattering; /* of media, forward */
-    bool of_pairs;   /* each pair of directions has lobes of its own: model_shape.h alone has it */
+    bool varied;      /* has variants and takes a mapping (model.h) */
+    bool one_coat;    /* over a Lambertian base, and no more */
+    bool scattering;  /* of media, forward */
+    bool anisotropic; /* of interfaces; model_shape.h alone has it */
+    bool of_pairs;    /* each pair of directions has lobes of its own: model_shape.h alone has it */
 } lq_model_kind;
 
 extern const lq_model_kind lq_model_kinds[LQ_MODELS];

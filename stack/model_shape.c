@@ -100,12 +100,55 @@ static lq_status make_grid(lq_model_shape *shape, lq_error *error) {
 }
 
 /* ======================================================================================
+ *                                      Anisotropic lobes
+ * ====================================================================================== */
+
+static lq_status make_turned(lq_model_shape *shape, size_t i, const lq_turned_lobe *from, lq_error *error) {
+    const double least = least_alpha(&shape->query);
+    const double x = fmin(fmax(from->alpha_x, least), 1.0), y = fmin(fmax(from->alpha_y, least), 1.0);
+    lq_shape_lobe *lobe = &shape->lobes[i];
+    /* Round lobes are those of b18-forward to the last digit. */
+    const lq_model_lobe round = {.energy = from->energy, .mean = from->mean, .alpha = from->alpha_x};
+    if (from->energy > 0.0) shape->sharpest = fmin(shape->sharpest, fmin(from->alpha_x, from->alpha_y));
+    if (x == y) return make_lobe(lobe, &round, &shape->query, error);
+    *lobe = (lq_shape_lobe){.energy = from->energy,
+                            .alpha = sqrt(x * y),
+                            .scale = from->energy > 0.0 ? 1.0 : 0.0,
+                            .from = lq_incidence_of(cosine_of(from->mean)),
+                            .turned = true,
+                            .ggx = {x, y, cos(from->angle), sin(from->angle)}};
+    if (!(from->energy > 0.0)) return LQ_OK;
+    const size_t k = i % shape->count;
+    const double whole =
+        shape->query.masked ? 1.0 : lq_model_shape_moments(shape, (int)(i / shape->count), k).energy;
+    lobe->scale = from->energy / whole;
+    return LQ_OK;
+}
+
+static lq_status aim_turned(lq_model_shape *shape, double mu, lq_error *error) {
+    lq_model_query query = query_of(&shape->query, shape->query.model);
+    const size_t all = shape->count * (size_t)shape->channels;
+    lq_turned_lobe *lobes = calloc(all, sizeof *lobes);
+    query.mu = &mu;
+    query.mu_count = 1;
+    lq_status status = lobes ? lq_model_y19(shape->stack, &query, shape->query.azimuth, lobes, error)
+                             : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", all);
+    for (size_t i = 0; i < all && status == LQ_OK; i++) status = make_turned(shape, i, &lobes[i], error);
+    free(lobes);
+    return status;
+}
+
+/* ======================================================================================
  *                                      Rays and BRDFs
  * ====================================================================================== */
 
 static bool of_rays(const lq_model_shape *shape) {
     return shape->query.model == LQ_MODEL_WEIDLICH_WILKIE ||
            shape->query.model == LQ_MODEL_WEIDLICH_WILKIE_CORRECTED;
+}
+
+static bool is_anisotropic(const lq_model_shape *shape) {
+    return lq_model_kinds[shape->query.model].anisotropic;
 }
 
 static bool is_brdf(const lq_model_shape *shape, size_t k) {
@@ -162,6 +205,9 @@ static lq_status aim_first(lq_model_shape *shape, lq_error *error) {
 
 static lq_status check_first(const lq_model_shape *shape, lq_error *error) {
     if (shape->query.first == LQ_FIRST_OF_MODEL) return LQ_OK;
+    if (is_anisotropic(shape))
+        return lq_fail(error, LQ_BAD_INPUT, "the first lobe of %s is the model's own",
+                       lq_model_names[shape->query.model]);
     if (of_rays(shape))
         return lq_fail(error, LQ_BAD_INPUT, "the first lobe of %s is the top interface's BRDF already",
                        lq_model_names[shape->query.model]);
@@ -177,6 +223,7 @@ static lq_status check_first(const lq_model_shape *shape, lq_error *error) {
 lq_status lq_model_shape_aim(lq_model_shape *shape, double mu, lq_error *error) {
     shape->sharpest = 1.0;
     const lq_status status = of_rays(shape)          ? aim_rays(shape, mu, error)
+                             : is_anisotropic(shape) ? aim_turned(shape, mu, error)
                              : shape->grid.nodes > 0 ? aim_grid(shape, mu, error)
                                                      : aim_lobes(shape, mu, error);
     return status == LQ_OK ? aim_first(shape, error) : status;
@@ -224,6 +271,7 @@ double lq_model_shape_lobe(const lq_model_shape *shape, int channel, size_t k, d
     double scale = lobe->scale, alpha = lobe->alpha;
     if (!(scale > 0.0)) return 0.0;
     if (is_brdf(shape, k)) return scale * lq_weidlich_value(&shape->rays, channel, k, lobe->from, x, y, z);
+    if (lobe->turned) return scale * lq_lobe_turned_density(lobe->from, &lobe->ggx, x, y, z);
     if (shape->grid.nodes > 0) {
         const double half = lq_incidence_half(lobe->from, x, z);
         const lq_grid_lobe other =

@@ -13,6 +13,8 @@
  * altogether is what comes of it (lq_model_shape_light). Transmitted light has the half vector of its
  * direction mirrored up and the refracted light's, and Snell takes the angle between them outside.
  *
+ * Anisotropic lobes (y19) are normalised by a sum of their own, to some 1e-3.
+ *
  * weidlich-wilkie and weidlich-wilkie-corrected are in weidlich.h.
  *
  * The first lobe of any model can be the BRDF of the top interface itself, F(h) D G2 / (4 mu_i mu_o), instead
@@ -21,6 +23,7 @@
 #ifndef LACQUER_STACK_MODEL_SHAPE_H
 #define LACQUER_STACK_MODEL_SHAPE_H
 
+#include "stack/model_y19.h"
 #include "stack/shape_grid.h"
 #include "stack/weidlich.h"
 
@@ -36,6 +39,8 @@ typedef struct lq_shape_lobe {
     double energy, alpha;
     double scale;      /* energy / A */
     lq_incidence from; /* what mirrors to its mean */
+    bool turned;       /* anisotropic: `alpha` is the geometric mean of two */
+    lq_turned_ggx ggx;
 } lq_shape_lobe;
 
 typedef struct lq_shape_query {
@@ -45,6 +50,7 @@ typedef struct lq_shape_query {
     const lq_model_mapping *mapping; /* that f, made for many shapes; NULL: made for this one */
     bool masked;
     lq_first_lobe first;
+    double azimuth;     /* of the light's travel from the x axis of the layers, in degrees: for y19 */
     double least_alpha; /* 0: LQ_SHAPE_LEAST_ALPHA */
     int threads;        /* 0: one per core */
 } lq_shape_query;

@@ -85,6 +85,14 @@ static double transmitted_variance(const lq_model_tables *tables, double alpha, 
     return lq_model_variance(tables->mapping, 0.5 * alpha * fabs(1.0 - tilt / eta));
 }
 
+lq_model_spread lq_model_spread_of(const lq_model_tables *tables, double alpha, lq_model_ray above,
+                                   lq_model_ray below) {
+    const double eta = below.index / above.index, in = above.cosine, out = below.cosine;
+    return (lq_model_spread){lq_model_variance(tables->mapping, alpha),
+                             transmitted_variance(tables, alpha, eta, in, out),
+                             transmitted_variance(tables, alpha, 1.0 / eta, out, in)};
+}
+
 static lq_status energies(const lq_model_tables *tables, double in, double out, double eta, double alpha,
                           double looked_up, lq_model_interface *i, lq_error *error) {
     lq_status status =
@@ -102,10 +110,11 @@ lq_status lq_model_dielectric(const lq_model_tables *tables, lq_model_ray *ray, 
                               double looked_up, lq_model_interface *i, lq_error *error) {
     const double eta = n / ray->index, in = ray->cosine, out = refracted(in, eta);
     const double jacobian = out > 0.0 ? eta * out / fmax(in, HORIZON) : 1.0;
+    const lq_model_spread spread = lq_model_spread_of(tables, alpha, *ray, (lq_model_ray){out, n});
     *i = (lq_model_interface){.j12 = jacobian, .j21 = 1.0 / jacobian};
-    i->r12.variance = i->r21.variance = lq_model_variance(tables->mapping, alpha);
-    i->t12.variance = transmitted_variance(tables, alpha, eta, in, out);
-    i->t21.variance = transmitted_variance(tables, alpha, 1.0 / eta, out, in);
+    i->r12.variance = i->r21.variance = spread.reflected;
+    i->t12.variance = spread.down;
+    i->t21.variance = spread.up;
     *ray = (lq_model_ray){out, n};
     return energies(tables, in, out, eta, alpha, looked_up, i, error);
 }

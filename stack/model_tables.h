@@ -46,6 +46,14 @@ lq_status lq_model_dielectric(const lq_model_tables *tables, lq_model_ray *ray, 
 lq_status lq_model_conductor(const lq_model_tables *tables, lq_model_ray ray, double n, double kappa,
                              double alpha, double looked_up, lq_model_interface *interface, lq_error *error);
 
+/* How far an interface of roughness `alpha` spreads light: what it reflects, and what it lets down and up,
+ * between a ray above it and the refracted one below. */
+typedef struct lq_model_spread {
+    double reflected, down, up;
+} lq_model_spread;
+lq_model_spread lq_model_spread_of(const lq_model_tables *tables, double alpha, lq_model_ray above,
+                                   lq_model_ray below);
+
 /* One crossing of a medium at a cosine. */
 lq_flow lq_model_medium(const lq_model_tables *tables, const lq_medium *medium, int channel, double cosine);
 

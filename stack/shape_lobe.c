@@ -22,6 +22,19 @@ double lq_lobe_density(lq_incidence from, double alpha, double x, double y, doub
     return d * z / (2.0 * (z * si + in * so));
 }
 
+/* Slopes stretched by each roughness; masking by the roughness in the direction of travel (docs/theory.md).
+ */
+double lq_lobe_turned_density(lq_incidence from, const lq_turned_ggx *ggx, double x, double y, double z) {
+    const double in = from.cosine, dx = x - from.sine, up = z + in, c = ggx->cosine, s = ggx->sine;
+    const double hx = (dx * c + y * s) / (up * ggx->x), hy = (y * c - dx * s) / (up * ggx->y);
+    const double tan2 = (dx * dx + y * y) / (up * up), stretched = 1.0 + hx * hx + hy * hy;
+    const double d = (1.0 + tan2) * (1.0 + tan2) / (PI * ggx->x * ggx->y * stretched * stretched);
+    const double ix = ggx->x * from.sine * c, iy = ggx->y * from.sine * s;
+    const double ox = ggx->x * (x * c + y * s), oy = ggx->y * (y * c - x * s);
+    const double si = sqrt(in * in + ix * ix + iy * iy), so = sqrt(z * z + ox * ox + oy * oy);
+    return d * z / (2.0 * (z * si + in * so));
+}
+
 lq_status lq_lobe_albedo(double mu, double alpha, double *value, lq_error *error) {
     const lq_kind *kind = lq_kind_find("albedo", error);
     lq_settings settings = lq_settings_default();

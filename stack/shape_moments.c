@@ -12,15 +12,16 @@ typedef struct facet {
     double density; /* of half vectors, over solid angle */
 } facet;
 
-/* tan^2 theta = alpha^2 u / (1 - u) has the density D cos theta. Rings crowd towards u = 1, the long tail;
- * `share` is what one stands for. */
-static facet facet_at(int ring, int sector, double alpha, double *share) {
+/* Slopes of sqrt(u / (1 - u)), stretched by the roughnesses, have the density D cos theta. Rings crowd
+ * towards u = 1, the long tail; `share` is what one stands for. */
+static facet facet_at(int ring, int sector, const lq_turned_ggx *ggx, double *share) {
     const double left = (ring + 0.5) / RINGS, u = 1.0 - left * left,
                  phi = 2.0 * PI * (sector + 0.5) / SECTORS;
-    const double a2 = alpha * alpha, tan2 = a2 * u / (1.0 - u), z = 1.0 / sqrt(1.0 + tan2);
-    const double sine = sqrt(tan2) * z, wide = a2 + tan2;
+    const double slope = sqrt(u / (1.0 - u)), sx = slope * ggx->x * cos(phi), sy = slope * ggx->y * sin(phi);
+    const double z = 1.0 / sqrt(1.0 + sx * sx + sy * sy);
     *share = 2.0 * left / (RINGS * SECTORS);
-    return (facet){sine * cos(phi), sine * sin(phi), z, a2 / (PI * z * z * z * wide * wide)};
+    return (facet){z * (sx * ggx->cosine - sy * ggx->sine), z * (sx * ggx->sine + sy * ggx->cosine), z,
+                   (1.0 - u) * (1.0 - u) / (PI * ggx->x * ggx->y * z * z * z)};
 }
 
 static void add_facet(lq_stack_lobe *sum, const lq_model_shape *shape, int channel, size_t k, facet h,
@@ -44,11 +45,12 @@ static lq_stack_lobe normalised(lq_stack_lobe sum, bool upright) {
 
 lq_stack_lobe lq_model_shape_moments(const lq_model_shape *shape, int channel, size_t k) {
     const lq_shape_lobe *lobe = &shape->lobes[(size_t)channel * shape->count + k];
+    const lq_turned_ggx ggx = lobe->turned ? lobe->ggx : (lq_turned_ggx){lobe->alpha, lobe->alpha, 1.0, 0.0};
     lq_stack_lobe sum = {0};
     for (int r = 0; r < RINGS && lobe->scale > 0.0; r++)
         for (int s = 0; s < SECTORS; s++) {
             double share;
-            const facet h = facet_at(r, s, lobe->alpha, &share);
+            const facet h = facet_at(r, s, &ggx, &share);
             add_facet(&sum, shape, channel, k, h, share);
         }
     return normalised(sum, lobe->from.sine == 0.0); /* there but for rounding */

@@ -3,33 +3,14 @@
 #include <math.h>
 
 #include "microfacet/fresnel.h"
-#include "stack/model_shape.h"
-#include "tests/stack_light.h"
+#include "tests/model_shape.h"
 
 enum { PRINTED, CORRECTED, BOTH };
-
-typedef struct shaped {
-    lq_stack *stack;
-    lq_model_shape shape;
-} shaped;
 
 static lq_shape_query rays(int which) {
     return (lq_shape_query){.model = which == PRINTED ? LQ_MODEL_WEIDLICH_WILKIE
                                                       : LQ_MODEL_WEIDLICH_WILKIE_CORRECTED,
                             .f = LQ_MODEL_F_B18};
-}
-
-static shaped make(const char *text, lq_shape_query query, double mu) {
-    shaped s = {.stack = parse(text)};
-    lq_error error = {""};
-    if (lq_model_shape_make(&s.shape, s.stack, &query, mu, &error) != LQ_OK)
-        fail_msg("%s: %s", text, error.text);
-    return s;
-}
-
-static void drop(shaped *s) {
-    lq_model_shape_free(&s->shape);
-    lq_stack_free(s->stack);
 }
 
 /* Some directions, one in the plane of incidence. */
@@ -136,16 +117,6 @@ static void test_first_lobe(void **state) {
         drop(&exact);
         drop(&scaled);
     }
-}
-
-static void assert_refused(const char *text, lq_shape_query query, double mu, const char *why) {
-    lq_stack *stack = parse(text);
-    lq_model_shape shape;
-    lq_error error = {""};
-    assert_int_equal(lq_model_shape_make(&shape, stack, &query, mu, &error), LQ_BAD_INPUT);
-    if (!strstr(error.text, why)) fail_msg("%s", error.text);
-    lq_model_shape_free(&shape);
-    lq_stack_free(stack);
 }
 
 static void test_refused(void **state) {

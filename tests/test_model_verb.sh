@@ -11,6 +11,7 @@ stacks=$LACQUER_SOURCE/recipes/stacks
 metal=$stacks/frosted-metal.json slab=$stacks/slab.json
 model='--model b18-forward'
 number='[0-9.e-]+'
+echo '{"layers": [{"conductor": {"n": 1, "kappa": 1, "alpha": {"x": 0.3, "y": 0.1}}}]}' >a.json
 
 # ------------------------------------------------------------------------------------------- formats
 run 0 stack "$slab" --mu 0.6 --format csv
@@ -41,6 +42,8 @@ run 0 stack "$metal" --model weidlich-wilkie-corrected --mu 0.6 --format csv
 says '^0\.6,0,0\.7931'
 run 0 stack "$metal" --model b18-forward --variant released --first exact --mu 0.6 --format json
 says '"first": "exact"'
+run 0 stack a.json --model y19 --variant released --mu 0.6 --azimuth 90
+says '^0\.6 +1 +[0-9.]+ +[0-9.]+ +0\.30000 +0\.10000 +-90\.00$'
 run 0 stack --help
 says '^  baked '
 
@@ -52,8 +55,8 @@ refused '--paths has no effect with --model' stack "$slab" $model --paths
 refused '--variant has no effect with --model baked' stack "$slab" --model baked --variant paper
 refused '--first has no effect with --model weidlich-wilkie' stack "$metal" --model weidlich-wilkie --first exact
 refused 'the last layer lets light through' stack "$slab" --model weidlich-wilkie
+refused '--azimuth has no effect with --model b18-forward' stack "$metal" $model --azimuth 30
 refused '--mapping has no effect without --model' stack "$slab" --mapping b18
-echo '{"layers": [{"conductor": {"n": 1, "kappa": 1, "alpha": {"x": 0.3, "y": 0.1}}}]}' >a.json
 refused 'layer 1 is anisotropic' stack a.json $model
 
 exit $((failures > 0))

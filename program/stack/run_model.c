@@ -24,6 +24,13 @@ static void read_shape(const lq_model_shape *shape, int channel, const lq_model_
     *light = lq_model_shape_light(shape, channel);
 }
 
+static void read_turned(const lq_model_shape *shape, int channel, lq_turned_ggx *turned) {
+    for (size_t k = 0; k < shape->count; k++) {
+        const lq_shape_lobe *lobe = &shape->lobes[(size_t)channel * shape->count + k];
+        turned[k] = lobe->turned ? lobe->ggx : (lq_turned_ggx){lobe->alpha, lobe->alpha, 1.0, 0.0};
+    }
+}
+
 static lq_status run_shape(model_result *r, lq_error *error) {
     const lq_model_query *q = r->query;
     lq_model_mapping mapping;
@@ -34,6 +41,7 @@ static lq_status run_shape(model_result *r, lq_error *error) {
                                   .f = q->f,
                                   .mapping = &mapping,
                                   .first = r->first,
+                                  .azimuth = r->azimuth,
                                   .threads = q->threads};
     if (status == LQ_OK) status = lq_model_shape_make(&shape, r->stack, &query, q->mu[0], error);
     for (size_t m = 0; m < q->mu_count && status == LQ_OK; m++) {
@@ -41,6 +49,7 @@ static lq_status run_shape(model_result *r, lq_error *error) {
         for (int c = 0; c < r->channels && status == LQ_OK; c++) {
             const size_t line = m * (size_t)r->channels + (size_t)c;
             read_shape(&shape, c, &mapping, r->lobes + line * shape.count, r->light + line);
+            if (r->turned) read_turned(&shape, c, r->turned + line * shape.count);
         }
     }
     lq_model_shape_free(&shape);
@@ -48,14 +57,17 @@ static lq_status run_shape(model_result *r, lq_error *error) {
 }
 
 lq_status model_run(model_result *r, const lq_progress *progress, lq_error *error) {
-    const size_t lines = r->query->mu_count * (size_t)r->channels;
-    r->lobes = calloc(lines * lq_model_lobe_count(r->stack), sizeof *r->lobes);
+    const size_t lines = r->query->mu_count * (size_t)r->channels,
+                 all = lines * lq_model_lobe_count(r->stack);
+    const lq_model_kind *kind = &lq_model_kinds[r->query->model];
+    r->lobes = calloc(all, sizeof *r->lobes);
     r->light = calloc(lines, sizeof *r->light);
-    if (!r->lobes || !r->light) {
+    r->turned = kind->anisotropic ? calloc(all, sizeof *r->turned) : NULL;
+    if (!r->lobes || !r->light || (kind->anisotropic && !r->turned)) {
         snprintf(error->text, sizeof error->text, "out of memory");
         return LQ_NO_MEMORY;
     }
-    return lq_model_kinds[r->query->model].of_pairs || r->first != LQ_FIRST_OF_MODEL
+    return kind->of_pairs || kind->anisotropic || r->first != LQ_FIRST_OF_MODEL
                ? run_shape(r, error)
                : run_lobes(r, progress, error);
 }
@@ -63,4 +75,5 @@ lq_status model_run(model_result *r, const lq_progress *progress, lq_error *erro
 void model_free(model_result *r) {
     free(r->lobes);
     free(r->light);
+    free(r->turned);
 }

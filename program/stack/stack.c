@@ -19,9 +19,10 @@ enum {
     OPTION_MODEL,
     OPTION_VARIANT,
     OPTION_MAPPING,
-    OPTION_FIRST
+    OPTION_FIRST,
+    OPTION_AZIMUTH
 };
-enum { EXACT = 1, VARIED = 2, LOBES = 4, RAYS = 8 };
+enum { EXACT = 1, VARIED = 2, LOBES = 4, RAYS = 8, TURNED = 16 };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 
 typedef struct stack_request {
@@ -30,7 +31,7 @@ typedef struct stack_request {
     int format;
     bool paths;
     size_t threads;
-    double tolerance;
+    double tolerance, azimuth;
     bool trusted;
     int model, variant, mapping, first;
 } stack_request;
@@ -47,13 +48,16 @@ static const cli_option options[] = {
      CLI_CHOICE(stack_request, model, lq_model_names)},
     {OPTION_VARIANT, "variant", "paper|released",
      "B18 as printed, or as its code was released (default paper)",
-     CLI_CHOICE(stack_request, variant, variants), .modes = VARIED},
+     CLI_CHOICE(stack_request, variant, variants), .modes = VARIED | TURNED},
     {OPTION_MAPPING, "mapping", "exact|b18", "f of roughness: computed, or B18's fit of it (default exact)",
-     CLI_CHOICE(stack_request, mapping, mappings), .modes = VARIED},
+     CLI_CHOICE(stack_request, mapping, mappings), .modes = VARIED | TURNED},
     {OPTION_FIRST, "first", "model|exact|scaled",
      "the first lobe: the model's, the top interface's BRDF of one scattering (Ba19 eq. 6), or that with the "
      "energy of the model's (default model)",
      CLI_CHOICE(stack_request, first, firsts), .modes = VARIED | LOBES},
+    {OPTION_AZIMUTH, "azimuth", "DEG",
+     "of the light's travel from the x axis that layers turn from (default 0)",
+     CLI_NUMBER(stack_request, azimuth, -360.0, 360.0), .modes = TURNED},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
@@ -112,6 +116,7 @@ static int solve(const stack_request *request, const lq_stack *stack) {
 static unsigned mode_of(const stack_request *request) {
     if (request->model < 0) return EXACT;
     const lq_model_kind *kind = &lq_model_kinds[request->model];
+    if (kind->anisotropic) return TURNED;
     return kind->varied ? VARIED : kind->of_pairs ? RAYS : LOBES;
 }
 
@@ -135,8 +140,9 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
                            .model = lq_model_names[request->model],
                            .variant = varied ? variants[request->variant] : NULL,
                            .mapping = varied ? mappings[request->mapping] : NULL,
-                           .first_name = mode_of(request) == RAYS ? NULL : firsts[request->first],
+                           .first_name = mode_of(request) & (RAYS | TURNED) ? NULL : firsts[request->first],
                            .first = (lq_first_lobe)request->first,
+                           .azimuth = request->azimuth,
                            .channels = lq_stack_channels(stack)};
     lq_error error = {""};
     cli_progress bar;

@@ -29,6 +29,9 @@ typedef struct model_result {
     int channels;
     lq_model_lobe *lobes;
     lq_stack_light *light;
+    double azimuth;
+    lq_turned_ggx
+        *turned; /* of each lobe of an anisotropic model, from the plane of incidence; NULL otherwise */
 } model_result;
 
 /* Fill `lobes` and `light`; model_free, also after a failure. Where some lobe is not a GGX lobe of the
