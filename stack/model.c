@@ -202,7 +202,8 @@ static lq_status turn(void *user, size_t m, int thread, lq_error *error) {
 
 static lq_status solve_b18(const lq_stack *stack, const lq_model_query *query, lq_model_lobe *lobes,
                            const lq_progress *progress, lq_error *error) {
-    const job j = {stack, query, {query->variant, query->mapping, query->tolerance, NULL}, lobes};
+    const job j = {
+        stack, query, {query->variant, query->mapping, query->tolerance, NULL, query->source}, lobes};
     return lq_parallel(query->mu_count, query->threads, turn, (void *)&j, progress, error);
 }
 

@@ -41,6 +41,7 @@ typedef struct lq_model_query {
     lq_model_variant variant; /* for those that have variants, as is f */
     lq_model_f f;
     const lq_model_mapping *mapping; /* that f, where it was made already; NULL: made for this query */
+    const lq_model_source *source;   /* of tables; NULL: they are computed exactly */
     double tolerance;                /* of tables; 0: what each has by itself */
     int threads;                     /* 0: one per core */
 } lq_model_query;

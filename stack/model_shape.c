@@ -38,6 +38,7 @@ static lq_model_query query_of(const lq_shape_query *query, lq_model_id model) {
                             .variant = query->variant,
                             .f = query->f,
                             .mapping = query->mapping,
+                            .source = query->source,
                             .threads = query->threads};
 }
 

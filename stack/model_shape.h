@@ -48,6 +48,7 @@ typedef struct lq_shape_query {
     lq_model_variant variant;
     lq_model_f f;
     const lq_model_mapping *mapping; /* that f, made for many shapes; NULL: made for this one */
+    const lq_model_source *source;   /* of tables; NULL: they are computed exactly */
     bool masked;
     lq_first_lobe first;
     double azimuth;     /* of the light's travel from the x axis of the layers, in degrees: for y19 */

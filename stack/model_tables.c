@@ -49,7 +49,9 @@ static lq_status look_up(const lq_model_tables *tables, const char *id, const do
     double all[2] = {0.0, 0.0};
     if (!kind) return LQ_BAD_INPUT;
     if (!recall(tables->memo, id, point, kind->axis_count, all)) {
-        const lq_status status = compute(kind, tables->tolerance, point, all, error);
+        const lq_model_source *source = tables->source;
+        const lq_status status = source ? source->value(source->user, kind, point, all, error)
+                                        : compute(kind, tables->tolerance, point, all, error);
         if (status != LQ_OK) return status;
         remember(tables->memo, id, point, kind->axis_count, all);
     }

@@ -24,11 +24,18 @@ typedef struct lq_model_memo {
     } entry[32]; /* those of more than 32 are looked up again */
 } lq_model_memo;
 
+/* Where values come from other than lq_eval: `value` is called by several threads. */
+typedef struct lq_model_source {
+    void *user;
+    lq_status (*value)(void *user, const lq_kind *kind, const double *point, double *values, lq_error *error);
+} lq_model_source;
+
 typedef struct lq_model_tables {
     lq_model_variant variant;
     const lq_model_mapping *mapping;
-    double tolerance;    /* of a table; 0: what its kind has */
-    lq_model_memo *memo; /* of this thread; NULL: none */
+    double tolerance;              /* of a table; 0: what its kind has */
+    lq_model_memo *memo;           /* of this thread; NULL: none */
+    const lq_model_source *source; /* NULL: exact */
 } lq_model_tables;
 
 /* The roughness at which FGD and TIR are looked up: the interface's own, or (released) that of all light that

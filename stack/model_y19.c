@@ -172,7 +172,7 @@ lq_status lq_model_y19(const lq_stack *stack, const lq_model_query *query, doubl
     lq_model_memo memo = {0};
     lq_model_mapping own;
     const lq_model_tables tables = {query->variant, query->mapping ? query->mapping : &own, query->tolerance,
-                                    &memo};
+                                    &memo, query->source};
     lq_status status = lq_model_check(stack, query, error);
     if (status == LQ_OK) status = check_base(stack, error);
     if (status == LQ_OK && !query->mapping) status = lq_model_mapping_make(&own, query->f, error);

@@ -372,6 +372,49 @@ static void test_channels_and_threads(void **state) {
     assert_memory_equal(one + (1 * 3 + 1) * 3, alone, sizeof alone);
 }
 
+/* Every table goes by the source, and its refusal ends the model. */
+typedef struct seen {
+    int fgd, dielectric, pass;
+    bool refuse;
+} seen;
+
+static lq_status look(void *user, const lq_kind *kind, const double *point, double *values, lq_error *error) {
+    seen *s = user;
+    (void)point;
+    if (s->refuse) {
+        snprintf(error->text, sizeof error->text, "no %s here", kind->id);
+        return LQ_BAD_INPUT;
+    }
+    if (strcmp(kind->id, "fgd") == 0) s->fgd++;
+    else if (strcmp(kind->id, "fgd-dielectric") == 0) s->dielectric++;
+    else if (strcmp(kind->id, "tir-pass") == 0) s->pass++;
+    values[0] = 0.5;
+    return LQ_OK;
+}
+
+static void test_tables_of_a_source(void **state) {
+    (void)state;
+    const double mu = 0.5;
+    seen s = {0};
+    const lq_model_source source = {&s, look};
+    const lq_model_query query = {
+        .mu = &mu, .mu_count = 1, .f = LQ_MODEL_F_B18, .source = &source, .threads = 1};
+    lq_model_lobe lobes[LOBES];
+    run_model(FROSTED, &query, lobes);
+    assert_int_equal(s.dielectric, 2);
+    assert_int_equal(s.fgd, 1);
+    assert_int_equal(s.pass, 1);
+    /* r21 = 1/2 + (1 - 1/2) 1/2, t21 = 1/4. */
+    assert_near(lobes[0].energy, 0.5, 0.0);
+    assert_near(lobes[1].energy, 0.5 * 0.5 * 0.25 / (1.0 - 0.75 * 0.5), 1e-15);
+    s.refuse = true;
+    lq_error error = {""};
+    lq_stack *stack = parse(FROSTED);
+    assert_int_equal(lq_model_solve(stack, &query, lobes, NULL, &error), LQ_BAD_INPUT);
+    assert_non_null(strstr(error.text, "no fgd-dielectric here"));
+    lq_stack_free(stack);
+}
+
 static void test_refused(void **state) {
     (void)state;
     static const char *const cases[][2] = {
@@ -418,6 +461,7 @@ int main(void) {
         cmocka_unit_test(test_released_departs),
         cmocka_unit_test(test_hard_cases),
         cmocka_unit_test(test_channels_and_threads),
+        cmocka_unit_test(test_tables_of_a_source),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,6 +47,27 @@ says '^0\.6 +1 +[0-9.]+ +[0-9.]+ +0\.30000 +0\.10000 +-90\.00$'
 run 0 stack --help
 says '^  baked '
 
+# ------------------------------------------------------------------------------------------- tables of a pack
+echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": 0.1}}, {"lambertian": {"rho": 0.7}}]}' >plastic.json
+cat >tiny.json <<'END'
+{"name": "tiny", "formats": ["exr"], "points": 100,
+ "tables": [{"table": "fgd-dielectric", "axes": {"mu": "0.02:1:12", "alpha": "0.1:0.3:3", "eta": "1.4:1.6:3"}},
+  {"table": "tir-pass", "axes": {"mu": "0.02:1:12", "alpha": "0:0.4:3", "eta": "0.6:0.7:3"}},
+  {"table": "fgd", "axes": {"mu": "0.02:1:12", "alpha": "0:0.4:3", "n": "0.13333333333333333", "kappa": "2:3:3"}}]}
+END
+run 0 pack tiny.json -o tiny --cache cache
+run 0 eval --from tiny fgd-dielectric mu=0.6 alpha=0.2 eta=1.5
+coat=$(cat out)
+run 0 stack "$metal" $model --variant released --mu 0.6 --tables tiny
+awk -v coat="$coat" '$2 == 1 && ($3 - coat) ^ 2 < 1e-12 { found = 1 } END { exit !found }' out ||
+    fail "the first lobe has not the pack's energy $coat: $(cat out)"
+says '^0\.6 +2 +0\.8[56]' # 0.8573 by exact tables
+refused 'fgd-dielectric up where pack tiny has none, at eta = 0\.666667; accepted: 1\.4 to 1\.6' \
+    stack "$metal" $model --tables tiny
+refused 'pack tiny has no table of transmission' \
+    stack plastic.json $model --variant released --tables tiny
+refused '--tables has no effect with --model baked' stack "$metal" --model baked --tables tiny
+
 # ------------------------------------------------------------------------------------------- refused
 refused "phong.*b18-forward" stack "$slab" --model phong
 refused 'lambertian base; accepted by b18-symmetric' stack "$stacks/varnished-base.json" --model b18-symmetric

@@ -97,8 +97,8 @@ int model_print_json(const model_result *r) {
     json_t *rows = json_array();
     for (size_t m = 0; m < r->query->mu_count; m++)
         for (int c = 0; c < r->channels; c++) lq_json_append(&rows, row_json(r, m, c));
-    json_t *root = json_pack("{s:o, s:s, s:s?, s:s?, s:s?, s:o}", "stack", lq_json_text(r->stack->name),
+    json_t *root = json_pack("{s:o, s:s, s:s?, s:s?, s:s?, s:s?, s:o}", "stack", lq_json_text(r->stack->name),
                              "model", r->model, "variant", r->variant, "mapping", r->mapping, "first",
-                             r->first_name, "light", rows);
+                             r->first_name, "tables", r->tables, "light", rows);
     return cli_print_json(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) ? CLI_DONE : CLI_FAILED;
 }

@@ -40,6 +40,7 @@ static lq_status run_shape(model_result *r, lq_error *error) {
                                   .variant = q->variant,
                                   .f = q->f,
                                   .mapping = &mapping,
+                                  .source = q->source,
                                   .first = r->first,
                                   .azimuth = r->azimuth,
                                   .threads = q->threads};

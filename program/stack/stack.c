@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pack/model_source.h"
 #include "program/light.h"
 #include "program/message.h"
 #include "program/options.h"
@@ -20,13 +21,14 @@ enum {
     OPTION_VARIANT,
     OPTION_MAPPING,
     OPTION_FIRST,
-    OPTION_AZIMUTH
+    OPTION_AZIMUTH,
+    OPTION_TABLES
 };
 enum { EXACT = 1, VARIED = 2, LOBES = 4, RAYS = 8, TURNED = 16 };
 enum { FORMAT_TEXT, FORMAT_CSV, FORMAT_JSON };
 
 typedef struct stack_request {
-    const char *path;
+    const char *path, *tables;
     cli_light light;
     int format;
     bool paths;
@@ -58,6 +60,8 @@ static const cli_option options[] = {
     {OPTION_AZIMUTH, "azimuth", "DEG",
      "of the light's travel from the x axis that layers turn from (default 0)",
      CLI_NUMBER(stack_request, azimuth, -360.0, 360.0), .modes = TURNED},
+    {OPTION_TABLES, "tables", "DIR", "a pack whose tables the model looks up (default: exact ones)",
+     CLI_TEXT(stack_request, tables), .modes = VARIED | TURNED},
     {OPTION_FORMAT, "format", "text|csv|json", "how to print (default text)",
      CLI_CHOICE(stack_request, format, formats)},
     {OPTION_PATHS, "paths", NULL, "split light by how often it met the first interface: 1, 2, ... N or more",
@@ -127,12 +131,13 @@ static int print_model(const stack_request *request, const model_result *result)
     return CLI_DONE;
 }
 
-static int solve_model(const stack_request *request, const lq_stack *stack) {
+static int run_model(const stack_request *request, const lq_stack *stack, const lq_model_source *source) {
     const lq_model_query query = {.mu = request->light.mu,
                                   .mu_count = request->light.count,
                                   .model = (lq_model_id)request->model,
                                   .variant = (lq_model_variant)request->variant,
                                   .f = (lq_model_f)request->mapping,
+                                  .source = source,
                                   .threads = (int)request->threads};
     const bool varied = lq_model_kinds[request->model].varied;
     model_result result = {.stack = stack,
@@ -141,6 +146,7 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
                            .variant = varied ? variants[request->variant] : NULL,
                            .mapping = varied ? mappings[request->mapping] : NULL,
                            .first_name = mode_of(request) & (RAYS | TURNED) ? NULL : firsts[request->first],
+                           .tables = request->tables,
                            .first = (lq_first_lobe)request->first,
                            .azimuth = request->azimuth,
                            .channels = lq_stack_channels(stack)};
@@ -151,6 +157,17 @@ static int solve_model(const stack_request *request, const lq_stack *stack) {
     cli_progress_end(&bar);
     const int code = status == LQ_OK ? print_model(request, &result) : cli_fail_status(status, &error);
     model_free(&result);
+    return code;
+}
+
+static int solve_model(const stack_request *request, const lq_stack *stack) {
+    lq_pack pack = {.count = 0};
+    lq_error error = {""};
+    if (!request->tables) return run_model(request, stack, NULL);
+    const lq_status status = lq_pack_read(&pack, request->tables, &error);
+    const lq_model_source source = lq_pack_source(&pack);
+    const int code = status == LQ_OK ? run_model(request, stack, &source) : cli_fail_status(status, &error);
+    lq_pack_free(&pack);
     return code;
 }
 

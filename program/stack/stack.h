@@ -24,7 +24,8 @@ int stack_print_json(const stack_result *result);
 typedef struct model_result {
     const lq_stack *stack;
     const lq_model_query *query;
-    const char *model, *variant, *mapping, *first_name; /* as the options name them; NULL: it has none */
+    const char *model, *variant, *mapping, *first_name,
+        *tables; /* as the options name them; NULL: it has none */
     lq_first_lobe first;
     int channels;
     lq_model_lobe *lobes;
