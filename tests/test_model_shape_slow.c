@@ -2,6 +2,7 @@
  */
 #include <math.h>
 
+#include "microfacet/fresnel.h"
 #include "stack/model_shape.h"
 #include "tests/stack_light.h"
 
@@ -21,11 +22,26 @@ static lq_model_shape make(const char *text, const lq_shape_query *query, double
 }
 
 /* As released: that asks for no tables from inside, which take longest. */
+static lq_status stand_in(void *user, const lq_kind *kind, const double *point, double *values,
+                          lq_error *error) {
+    (void)user;
+    (void)error;
+    values[0] = strcmp(kind->id, "fgd-dielectric") == 0 ? lq_fresnel_dielectric(point[0], point[2], NULL)
+                : strcmp(kind->id, "fgd") == 0          ? lq_fresnel_conductor(point[0], point[2], point[3])
+                                                        : 0.8;
+    if (kind->channel_count > 1) values[1] = 0.5;
+    return LQ_OK;
+}
+
+/* Smooth energies in place of tables, for what does not depend on them: pairs of directions need many. */
+static const lq_model_source quick_source = {NULL, stand_in};
+static const lq_shape_query quick = {.f = LQ_MODEL_F_B18, .source = &quick_source},
+                            symmetric = {.model = LQ_MODEL_B18_SYMMETRIC,
+                                         .f = LQ_MODEL_F_B18,
+                                         .source = &quick_source};
+
 static const lq_shape_query b18 = {.variant = LQ_MODEL_RELEASED, .f = LQ_MODEL_F_B18},
                             masked_b18 = {.variant = LQ_MODEL_RELEASED, .f = LQ_MODEL_F_B18, .masked = true},
-                            symmetric = {.model = LQ_MODEL_B18_SYMMETRIC,
-                                         .variant = LQ_MODEL_RELEASED,
-                                         .f = LQ_MODEL_F_B18},
                             baked = {.model = LQ_MODEL_BAKED, .f = LQ_MODEL_F_B18};
 
 typedef struct totals {
@@ -70,8 +86,12 @@ static lq_stack_light light_of(const char *text, const lq_shape_query *query, do
     lq_stack *stack = parse(text);
     lq_model_lobe lobes[3 * 8];
     lq_error error = {""};
-    const lq_model_query light = {
-        .mu = &mu, .mu_count = 1, .model = query->model, .variant = query->variant, .f = query->f};
+    const lq_model_query light = {.mu = &mu,
+                                  .mu_count = 1,
+                                  .model = query->model,
+                                  .variant = query->variant,
+                                  .f = query->f,
+                                  .source = query->source};
     if (lq_model_solve(stack, &light, lobes, NULL, &error) != LQ_OK) fail_msg("%s", error.text);
     const lq_stack_light got = lq_model_light(stack, lobes);
     lq_stack_free(stack);
@@ -82,15 +102,13 @@ static void test_energies_and_moments(void **state) {
     (void)state;
     static const char *const stacks[] = {FROSTED, SLAB, LAYERS(COATING(1.5, 0.3, 0.8) "," LAMBERTIAN(0.7))};
     for (size_t i = 0; i < sizeof stacks / sizeof *stacks; i++)
-        for (double mu = 0.4; mu <= 1.0; mu += 0.6)
-            for (int model = 0; model < 2; model++) {
-                const lq_shape_query query = model ? baked : b18;
-                const lq_stack_light expected = light_of(stacks[i], &query, mu);
-                lq_model_shape shape = make(stacks[i], &query, mu);
-                assert_moments(sum_up(&shape, 1.0, COARSE), &expected.reflected, 1e-3);
-                assert_moments(sum_up(&shape, -1.0, COARSE), &expected.transmitted, 1e-3);
-                lq_model_shape_free(&shape);
-            }
+        for (double mu = 0.4; mu <= 1.0; mu += 0.3) {
+            const lq_stack_light expected = light_of(stacks[i], &quick, mu);
+            lq_model_shape shape = make(stacks[i], &quick, mu);
+            assert_moments(sum_up(&shape, 1.0, COARSE), &expected.reflected, 1e-3);
+            assert_moments(sum_up(&shape, -1.0, COARSE), &expected.transmitted, 1e-3);
+            lq_model_shape_free(&shape);
+        }
 }
 
 /* Baked lobes have the exact energies, each its own, and the exact spread across the plane of incidence. */
@@ -214,7 +232,7 @@ static double value_at(const lq_model_shape *shape, double z) {
 /* Where the half vector is the normal, theta_d is theta_i; on either side. */
 static void test_symmetric_mirrors_as_forward(lq_model_shape *shape, const char *text) {
     for (double mu = 0.1; mu <= 1.0; mu += 0.3) {
-        lq_model_shape forward = make(text, &b18, mu);
+        lq_model_shape forward = make(text, &quick, mu);
         aim(shape, mu);
         assert_near(value_at(shape, mu) / value_at(&forward, mu), 1.0, 5e-3);
         if (forward.lobes[forward.count - 1].energy > 0.0)
@@ -223,14 +241,14 @@ static void test_symmetric_mirrors_as_forward(lq_model_shape *shape, const char 
     }
 }
 
-/* f(i, o) = f(o, i); of b18-forward that is 19 % off here. */
+/* f(i, o) = f(o, i); of b18-forward that is not so. */
 static void test_symmetric_is_reciprocal(lq_model_shape *shape) {
     aim(shape, 0.5);
     const double there = value_at(shape, 0.8) / 0.8;
     aim(shape, 0.8);
     const double back = value_at(shape, 0.5) / 0.5;
     assert_near(there / back, 1.0, 1e-12);
-    lq_model_shape one = make(FROSTED, &b18, 0.5), other = make(FROSTED, &b18, 0.8);
+    lq_model_shape one = make(FROSTED, &quick, 0.5), other = make(FROSTED, &quick, 0.8);
     assert_true(fabs(value_at(&one, 0.8) / 0.8 / (value_at(&other, 0.5) / 0.5) - 1.0) > 0.1);
     lq_model_shape_free(&one);
     lq_model_shape_free(&other);
@@ -267,8 +285,8 @@ static void test_symmetric(void **state) {
 static void test_moments_of_lobes(void **state) {
     (void)state;
     for (double mu = 0.1; mu <= 1.0; mu += 0.3) {
-        lq_model_shape shape = make(SLAB, &b18, mu);
-        const lq_stack_light expected = light_of(SLAB, &b18, mu), got = lq_model_shape_light(&shape, 0);
+        lq_model_shape shape = make(SLAB, &quick, mu);
+        const lq_stack_light expected = light_of(SLAB, &quick, mu), got = lq_model_shape_light(&shape, 0);
         for (int side = 0; side < 2; side++) {
             const lq_stack_lobe *a = side ? &got.transmitted : &got.reflected;
             const lq_stack_lobe *b = side ? &expected.transmitted : &expected.reflected;
