@@ -54,8 +54,7 @@ static const cli_option options[] = {
     {OPTION_MAPPING, "mapping", "exact|b18", "f of roughness: computed, or B18's fit of it (default exact)",
      CLI_CHOICE(stack_request, mapping, mappings), .modes = VARIED | TURNED},
     {OPTION_FIRST, "first", "model|exact|scaled",
-     "the first lobe: the model's, the top interface's BRDF of one scattering (Ba19 eq. 6), or that with the "
-     "energy of the model's (default model)",
+     "first lobe: the model's, the top's BRDF (Ba19 eq. 6), or that with the model's energy (default model)",
      CLI_CHOICE(stack_request, first, firsts), .modes = VARIED | LOBES},
     {OPTION_AZIMUTH, "azimuth", "DEG",
      "of the light's travel from the x axis that layers turn from (default 0)",
@@ -206,8 +205,7 @@ static void print_notes(FILE *out) {
         "FILE.json describes layers from the top; see docs/stacks.md.\n"
         "Exit 2: printed, but some estimate is above the tolerance.\n\nModels (--model):\n");
     for (int i = 0; i < LQ_MODELS; i++)
-        fprintf(out, "  %-14s %s\n", lq_model_names[i], lq_model_kinds[i].title);
-    fputc('\n', out);
+        fprintf(out, "  %-26s %s\n", lq_model_names[i], lq_model_kinds[i].title);
 }
 
 const cli_verb cli_verb_stack = {
