@@ -62,6 +62,16 @@ static void add_cuts(lq_panels *panels, const view *w) {
     }
 }
 
+/* The same of light that is reflected back. Rising light never is. */
+static void add_back_cuts(lq_panels *panels, const view *w) {
+    if (!w->cuts || w->eta > 0.0 || w->v_z < 0.0) return;
+    for (int i = 0; i < w->cuts->back_count; i++) {
+        const double angle = acos(-w->cuts->back[i]);
+        const double turns[3] = {angle + w->theta, angle - w->theta, 2.0 * pi - angle - w->theta};
+        for (int t = 0; t < 3; t++) lq_panels_add(panels, 0.5 * turns[t], false);
+    }
+}
+
 /* Masking changes over reflected cosines of the size of the incident one: at grazing incidence that is a
  * thin layer of facets around those that reflect along the horizon. */
 static void grade_grazing(lq_panels *panels, double theta) {
@@ -88,6 +98,7 @@ static bool make_panels(const view *w, const lq_panels *extra, lq_panels *panels
     grade_grazing(panels, w->theta);
     add_extra(panels, extra, false);
     add_cuts(panels, w);
+    add_back_cuts(panels, w);
     lq_panels_separate(panels);
     return true;
 }

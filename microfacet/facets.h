@@ -45,10 +45,11 @@ typedef struct lq_facet_rule {
 } lq_facet_rule;
 
 /* Cosines, ascending, at which what light is worth that leaves the surface is not smooth: azimuth and d are
- * divided where facets send light there. */
+ * divided where facets send light there. For light that goes back towards the surface, d alone is: azimuth
+ * smooths kinks that are weak. */
 typedef struct lq_facet_cuts {
-    int count;
-    double cosine[LQ_FACET_CUTS_MAX];
+    int count, back_count;
+    double cosine[LQ_FACET_CUTS_MAX], back[LQ_FACET_CUTS_MAX];
 } lq_facet_cuts;
 
 void lq_facet_rule_make(lq_facet_rule *rule, int outer, int inner);

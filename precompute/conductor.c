@@ -2,6 +2,7 @@
 #include "precompute/conductor.h"
 
 #include "microfacet/fresnel.h"
+#include "precompute/critical.h"
 #include "precompute/first_bounce.h"
 #include "precompute/kernels.h"
 #include "precompute/nodes.h"
@@ -20,22 +21,26 @@
  * difference, and at 307 of 600 points of alpha in [0.7, 1] the estimate was too small, by 14 times. */
 typedef struct level {
     int nodes, outer, inner;
+    bool fine; /* see operators_allocate */
 } level;
 
-static const level levels[] = {{12, 8, 12},  {16, 10, 16}, {24, 12, 20},  {32, 16, 24}, {48, 24, 32},
-                               {64, 32, 40}, {96, 40, 56}, {128, 48, 60}, {192, 56, 64}};
+static const level levels[] = {{12, 8, 12, false},  {16, 10, 16, false}, {24, 12, 20, false},
+                               {32, 16, 24, false}, {48, 24, 32, false}, {64, 32, 40, false},
+                               {96, 40, 56, true},  {128, 48, 60, true}, {192, 56, 64, true}};
+
+/* Of materials whose axes are divided: nodes of all elements together. */
+static const level divided[] = {{16, 8, 12, false},  {24, 12, 16, false}, {36, 12, 20, false},
+                                {48, 16, 24, false}, {60, 18, 28, false}, {84, 24, 36, false},
+                                {120, 32, 48, true}, {168, 40, 56, true}, {240, 52, 64, true}};
 enum { LEVELS = sizeof levels / sizeof levels[0] };
 
 /* ------------------------------------------------------------------------------ operators */
 
-/* Cosines at which the two node axes are divided, or 0. */
-typedef struct split {
-    double down, up;
-} split;
-
 typedef struct operators {
     int nodes, curves;
+    bool fine, rooted;
     size_t stride;
+    lq_facet_cuts cuts; /* where the axes are divided */
     lq_node_axis down, up;
     double a_down[LQ_NODES_MAX], a_up[LQ_NODES_MAX];
     double *dd, *du, *uu; /* as in lq_sylvester */
@@ -92,45 +97,73 @@ static void write_row(const operators *o, const lq_node_axis *axis, const double
 static void scatter_direction(const lq_ndf *ndf, double alpha, double v_z, const lq_facet_rule *rule,
                               scatter *s) {
     const size_t size = (size_t)s->curves->count * (size_t)s->o->nodes * sizeof(double);
+    const lq_facet_view view = {ndf,        alpha, 0.0, v_z, lq_sine(fabs(v_z)), rule, &s->curves->panels,
+                                &s->o->cuts};
     memset(s->to_down, 0, size);
     memset(s->to_up, 0, size);
     s->total = 0.0;
-    lq_facets_visit(ndf, alpha, v_z, lq_sine(fabs(v_z)), rule, &s->curves->panels, scatter_fan, s);
+    lq_facets_visit_view(&view, scatter_fan, s);
+}
+
+/* From this roughness on a rooted axis is the better one at few nodes, too. */
+static const double ROOTED = 0.15;
+
+/* Nodes of every element of one axis, so that both have as many in all. */
+static int nodes_of(const level *l, int elements, int others) {
+    const int both = elements == others ? elements : elements * others;
+    return (l->nodes + both - 1) / both * both / elements;
+}
+
+static bool make_axes(operators *o, double alpha, const level *l, const lq_critical *at) {
+    const int down = at->down_count + 1, up = at->up_count + 1;
+    o->rooted = l->fine || alpha >= (at->down_count ? 0.5 : 1.0) * ROOTED;
+    const lq_sense falling = o->rooted ? LQ_FALLING_ROOTED : LQ_FALLING;
+    return lq_node_axis_make_divided(&o->down, alpha, falling, at->down, at->down_count,
+                                     nodes_of(l, down, up)) &&
+           lq_node_axis_make_divided(&o->up, alpha, LQ_RISING, at->up, at->up_count, nodes_of(l, up, down));
+}
+
+static void set_cuts(lq_facet_cuts *cuts, const lq_critical *at) {
+    for (int i = 0; i < at->up_count; i++) cuts->cosine[cuts->count++] = at->up[i];
+    for (int i = 0; i < at->down_count; i++) cuts->back[cuts->back_count++] = at->down[i];
 }
 
 static bool operators_allocate(operators *o, double alpha, const lq_curves *curves, const level *l,
-                               split at) {
-    const size_t n = (size_t)l->nodes, k = (size_t)curves->count;
-    *o = (operators){.nodes = l->nodes, .curves = curves->count, .stride = (n * n + 7) / 8 * 8};
+                               const lq_critical *at) {
+    *o = (operators){.curves = curves->count, .fine = l->fine};
+    const bool axes = make_axes(o, alpha, l, at);
+    const size_t n = (size_t)o->down.count, k = (size_t)curves->count;
+    o->nodes = o->down.count;
+    o->stride = (n * n + 7) / 8 * 8;
+    set_cuts(&o->cuts, at);
     o->dd = lq_zeros(k * o->stride);
     o->du = lq_zeros(k * o->stride);
     o->uu = lq_zeros(k * o->stride);
-    const bool axes = lq_node_axis_make(&o->down, alpha, LQ_FALLING, l->nodes, at.down) &&
-                      lq_node_axis_make(&o->up, alpha, LQ_RISING, l->nodes, at.up);
     return axes && o->dd && o->du && o->uu;
 }
 
 static void operators_fill(operators *o, const lq_ndf *ndf, double alpha, const level *l, scatter *s) {
     lq_facet_rule rule;
     lq_facet_rule_make(&rule, l->outer, l->inner);
-    for (int i = 0; i < l->nodes; i++) {
+    for (int i = 0; i < o->nodes; i++) {
         o->a_down[i] = 1.0 + lq_lambda(ndf, alpha, o->down.mu[i]);
         o->a_up[i] = lq_lambda(ndf, alpha, o->up.mu[i]);
         scatter_direction(ndf, alpha, o->down.mu[i], &rule, s);
-        write_row(o, &o->down, s->to_down, s->total, i, l->nodes, 1, o->dd);
-        write_row(o, &o->up, s->to_up, s->total, i, l->nodes, 1, o->du);
+        write_row(o, &o->down, s->to_down, s->total, i, o->nodes, 1, o->dd);
+        write_row(o, &o->up, s->to_up, s->total, i, o->nodes, 1, o->du);
         scatter_direction(ndf, alpha, -o->up.mu[i], &rule, s);
-        write_row(o, &o->up, s->to_up, s->total, i, 1, l->nodes, o->uu);
+        write_row(o, &o->up, s->to_up, s->total, i, 1, o->nodes, o->uu);
     }
 }
 
 static bool operators_make(operators *o, const lq_ndf *ndf, double alpha, const lq_curves *curves,
-                           const level *l, split at) {
-    const size_t row = (size_t)curves->count * (size_t)l->nodes;
+                           const level *l, const lq_critical *at) {
     scatter s = {.curves = curves, .kernels = lq_solver_kernels_get(), .o = o};
+    bool ok = operators_allocate(o, alpha, curves, l, at);
+    const size_t row = (size_t)curves->count * (size_t)o->nodes;
     s.to_down = lq_zeros(row);
     s.to_up = lq_zeros(row);
-    const bool ok = operators_allocate(o, alpha, curves, l, at) && s.to_down && s.to_up;
+    ok = ok && s.to_down && s.to_up;
     if (ok) operators_fill(o, ndf, alpha, l, &s);
     free(s.to_down);
     free(s.to_up);
@@ -154,7 +187,7 @@ static void readout_free(readout *r) {
 /* False without memory; free it in either case. */
 static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, double alpha,
                          const lq_curves *curves, const level *l, const double *mu, size_t count) {
-    const size_t k = (size_t)curves->count, n = (size_t)l->nodes;
+    const size_t k = (size_t)curves->count, n = (size_t)o->nodes;
     *r = (readout){{0}, lq_zeros(count * k), lq_zeros(count * k), lq_zeros(count * n)};
     if (!r->escaping || !r->remaining || !r->weights) return false;
     lq_facet_rule rule;
@@ -162,7 +195,8 @@ static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, doub
     for (size_t m = 0; m < count; m++) {
         lq_first_bounce(ndf, alpha, LQ_CORRELATED, mu[m], curves, &rule, r->escaping + m * k,
                         r->remaining + m * k);
-        lq_node_axis_weights(&o->down, mu[m], r->weights + m * n);
+        (o->fine ? lq_node_axis_weights_from_zero : lq_node_axis_weights)(&o->down, mu[m],
+                                                                          r->weights + m * n);
     }
     r->at = (lq_readout){count, r->escaping, r->remaining, r->weights};
     return true;
@@ -173,6 +207,7 @@ static bool readout_make(readout *r, const operators *o, const lq_ndf *ndf, doub
 /* Work space of the batches of one level. */
 typedef struct batch {
     lq_sylvester s;
+    bool rooted; /* what remains at its first nodes is next to nothing, but known */
     lq_v8 *work, *coefficients, *ratio, *energy;
 } batch;
 
@@ -188,13 +223,15 @@ static lq_v8 *vectors(size_t count) {
 }
 
 static bool batch_make(batch *b, const operators *o, size_t mu_count) {
-    *b = (batch){.work = vectors(4 * o->stride),
+    *b = (batch){.rooted = o->rooted,
+                 .work = vectors(4 * o->stride),
                  .coefficients = vectors((size_t)o->curves),
                  .ratio = vectors((size_t)o->nodes),
                  .energy = vectors(mu_count)};
     b->s = (lq_sylvester){.nodes = o->nodes,
                           .curves = o->curves,
                           .stride = o->stride,
+                          .loses = o->fine,
                           .dd = o->dd,
                           .du = o->du,
                           .uu = o->uu,
@@ -224,7 +261,7 @@ enum { SWEEPS_MAX = 400 };
 
 static void batch_solve(batch *b, const lq_solver_kernels *kernels, const lq_readout *at, double tolerance) {
     const double settle = fmin(1e-4 * tolerance, 1e-11);
-    b->s.negligible = 0.01 * tolerance;
+    b->s.negligible = b->rooted ? 1e-14 : 0.01 * tolerance;
     kernels->assemble(&b->s);
     memset(b->s.r, 0, b->s.stride * sizeof(lq_v8));
     for (int sweep = 0; sweep < SWEEPS_MAX && kernels->sweep(&b->s) > settle; sweep++) continue;
@@ -248,7 +285,6 @@ typedef struct refinement {
 /* Materials solved together: a basis of curves of their own, and of each its place in the refinement. */
 typedef struct group {
     const lq_conductors *materials;
-    split at;       /* see operators_make */
     size_t *active; /* those not yet within tolerance, ascending, as indices into `materials` */
     size_t active_count;
     const size_t *place; /* of each of `materials`, or NULL: their own index */
@@ -292,11 +328,23 @@ static bool solve_batches(refinement *r, const group *g, const operators *o, con
     return true;
 }
 
+/* Where the axes of a group are divided: nowhere, if it has many materials. */
+static lq_critical divisions_of(const refinement *r, const group *g, bool fine) {
+    const lq_conductors *m = g->materials;
+    return m->count == 1 ? lq_critical_find(r->alpha, m->n[0], m->kappa[0], fine)
+                         : (lq_critical){.distance = INFINITY};
+}
+
+static bool is_divided(const refinement *r, const group *g) {
+    return divisions_of(r, g, false).down_count > 0;
+}
+
 static bool solve_level(refinement *r, const group *g, const level *l) {
+    const lq_critical at = divisions_of(r, g, l->fine);
     const lq_curves *curves = &g->materials->curves;
     operators o;
     readout read;
-    if (!operators_make(&o, r->ndf, r->alpha, curves, l, g->at)) return false;
+    if (!operators_make(&o, r->ndf, r->alpha, curves, l, &at)) return false;
     const bool ok = readout_make(&read, &o, r->ndf, r->alpha, curves, l, r->mu, r->mu_count) &&
                     solve_batches(r, g, &o, &read);
     readout_free(&read);
@@ -309,17 +357,6 @@ static void retire(const refinement *r, group *g) {
     for (size_t i = 0; i < g->active_count; i++)
         if (estimate_of(r, place_of(g, g->active[i])) > r->tolerance) g->active[left++] = g->active[i];
     g->active_count = left;
-}
-
-/* Where the energies of a material with a critical angle, cos = c*, are not smooth. A rising ray at cosine mu
- * > n meets no facet below the critical angle, so that its kink is at n = sqrt(1 - c*^2) exactly; a falling
- * one turns at c* within alpha, and for a wide lobe at n too, where the critical cone touches the horizon. */
-static split critical_split(double alpha, double n, double kappa) {
-    lq_fresnel_singularity found[2];
-    lq_fresnel_singularities(n, kappa, found);
-    const double cosine = cos(found[0].angle), sine = sin(found[0].angle);
-    if (n >= 1.0 || found[0].distance > 0.15 || cosine < 1e-6 || sine < 1e-6) return (split){0.0, 0.0};
-    return (split){alpha < 0.3 ? cosine : sine, sine};
 }
 
 static bool refine(refinement *r, group *g, int from);
@@ -343,9 +380,9 @@ static bool refine_apart(refinement *r, const group *g, size_t size, int from) {
         }
         ok = ok && lq_conductors_make(&materials, n, n + count, count, 0.01 * r->tolerance, NULL) == LQ_OK;
         if (ok) {
-            const split none = {0.0, 0.0}, at = count == 1 ? critical_split(r->alpha, n[0], n[1]) : none;
-            group own = {&materials, at, place + count, count, place};
-            ok = refine(r, &own, from);
+            group own = {
+                .materials = &materials, .active = place + count, .active_count = count, .place = place};
+            ok = refine(r, &own, from > 2 && is_divided(r, &own) ? from - 2 : from);
         }
         lq_conductors_free(&materials);
         free(n);
@@ -363,10 +400,29 @@ static bool refine(refinement *r, group *g, int from) {
             if (i == LEVELS - 1) return refine_apart(r, g, 1, i - 1);
             if (2 * g->active_count < g->materials->count) return refine_apart(r, g, g->active_count, i);
         }
-        if (!solve_level(r, g, &levels[i])) return false;
+        if (!solve_level(r, g, is_divided(r, g) ? &divided[i] : &levels[i])) return false;
         if (i > 0) retire(r, g);
     }
     return true;
+}
+
+/* Is the critical angle so sharp that it is a kink to any level of many materials? */
+static bool is_sharp(double alpha, const lq_conductors *materials, size_t m) {
+    static const double SHARP = 0.02;
+    const lq_critical at = lq_critical_find(alpha, materials->n[m], materials->kappa[m], false);
+    return at.down_count && at.distance < SHARP;
+}
+
+/* Sharp materials each alone, and the others together. `active` has room for all. */
+static bool refine_all(refinement *r, const lq_conductors *materials, size_t *active) {
+    const size_t count = materials->count;
+    group smooth = {.materials = materials, .active = active}, sharp = {.materials = materials};
+    for (size_t m = 0; m < count; m++)
+        if (count == 1 || !is_sharp(r->alpha, materials, m)) active[smooth.active_count++] = m;
+    sharp.active = active + smooth.active_count;
+    for (size_t m = 0; m < count && count > 1; m++)
+        if (is_sharp(r->alpha, materials, m)) sharp.active[sharp.active_count++] = m;
+    return refine_apart(r, &sharp, 1, 0) && refine(r, &smooth, 0);
 }
 
 /* The limit alpha = 0. At alpha > 0 light at cosines of a few alpha still leaves at such cosines, so that it
@@ -389,19 +445,14 @@ static lq_status solve_slice(const lq_ndf *ndf, double alpha, const lq_conductor
     refinement r = {ndf, alpha, mu, mu_count, 0.0, energy, malloc(materials->count * sizeof(double))};
     /* The representation of the materials takes its share of the tolerance first. */
     r.tolerance = fmax(tolerance - materials->missed, 0.5 * tolerance);
-    group all = {.materials = materials, .active_count = materials->count};
-    all.active = malloc(materials->count * sizeof *all.active);
-    bool ok = r.change && all.active;
-    for (size_t m = 0; ok && m < materials->count; m++) {
-        all.active[m] = m;
-        r.change[m] = -1.0;
-    }
-    if (materials->count == 1) all.at = critical_split(alpha, materials->n[0], materials->kappa[0]);
-    ok = ok && refine(&r, &all, 0);
+    size_t *active = malloc(materials->count * sizeof *active);
+    bool ok = r.change && active;
+    for (size_t m = 0; ok && m < materials->count; m++) r.change[m] = -1.0;
+    ok = ok && refine_all(&r, materials, active);
     *estimate = materials->missed;
     for (size_t m = 0; ok && m < materials->count; m++)
         *estimate = fmax(*estimate, estimate_of(&r, m) + materials->missed);
-    free(all.active);
+    free(active);
     free(r.change);
     return ok ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory to solve %zu materials", materials->count);
 }
@@ -516,7 +567,7 @@ lq_status lq_conductor_orders(const lq_ndf *ndf, double alpha, const lq_conducto
     operators o;
     readout read;
     batch b;
-    bool ok = operators_make(&o, ndf, alpha, &material->curves, &l, (split){0.0, 0.0});
+    bool ok = operators_make(&o, ndf, alpha, &material->curves, &l, &(lq_critical){.distance = INFINITY});
     if (ok) {
         ok = readout_make(&read, &o, ndf, alpha, &material->curves, &l, &mu, 1);
         if (ok && (ok = batch_make(&b, &o, 1))) {

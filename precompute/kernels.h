@@ -17,12 +17,13 @@ typedef double lq_v8 __attribute__((vector_size(64)));
 
 /* Where a cosine lies on the axis of the interpolation nodes:
  *     x = scale asinh(t / alpha) + shift,
- * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set. Where `root` is set, it is
+ * t the cosine itself, or 2 tan(elevation/2) where `half_angle` is set; where `rooted` is set, the root of
+ * asinh(t / alpha) takes its place. Where `root` is set, it is
  *     x = scale sqrt(root (cosine - from)) + shift,
  * root being 1 or -1. */
 typedef struct lq_cosine_map {
     double inverse_alpha, scale, shift;
-    int half_angle;
+    int half_angle, rooted;
     int root;
     double from;
 } lq_cosine_map;
@@ -36,6 +37,7 @@ typedef struct lq_sylvester {
     const double *dd, *du, *uu;
     const double *a_down, *a_up;
     double negligible;         /* energy below which what remains after a bounce does not count */
+    int loses;                 /* `ratio` is what is lost of the flux, not what leaves of what remains */
     const lq_v8 *coefficients; /* [curve] */
     lq_v8 *down, *source, *up; /* work, stride each */
     lq_v8 *r;                  /* nodes^2: start and solution */
@@ -74,8 +76,9 @@ typedef struct lq_solver_kernels {
     /* sums[k * moments + m] += curve[k] * moment[m] */
     void (*spread)(int curves, const double *curve, int moments, const double *moment, double *sums);
     /* Operators of a batch from those of the curves; one Gauss-Seidel sweep, returning the largest change
-     * over all lanes; the fraction of the flux that hits twice or more that leaves, at every node; the
-     * energy at the cosines of a readout. */
+     * over all lanes; the fraction of the flux that hits twice or more that leaves (or where it `loses`,
+     * the flux that hits twice or more and does not), at every node; the energy at the cosines of a
+     * readout. */
     void (*assemble)(const lq_sylvester *s);
     double (*sweep)(const lq_sylvester *s);
     void (*survival)(const lq_sylvester *s, lq_v8 *ratio);

@@ -40,8 +40,11 @@ static void map_cosines(const lq_cosine_map *map, size_t count, const double *re
         const double sine2 = (1.0 - cosine[i]) * (1.0 + cosine[i]);
         const double t = 2.0 * cosine[i] / (1.0 + sqrt(sine2));
         const double y = inverse * (cosine[i] + half * (t - cosine[i]));
-        x[i] = scale * log_positive(y + sqrt(y * y + 1.0)) + shift;
+        x[i] = log_positive(y + sqrt(y * y + 1.0));
     }
+    if (map->rooted)
+        for (size_t i = 0; i < count; i++) x[i] = sqrt(x[i] > 0.0 ? x[i] : 0.0);
+    for (size_t i = 0; i < count; i++) x[i] = scale * x[i] + shift;
 }
 
 /* Add the moments of `groups` vectors of facets to sum[m]. The recurrence of T_m is started from the weight
@@ -295,6 +298,10 @@ static void survival(const lq_sylvester *s, lq_v8 *ratio) {
             later += s->r[i * n + j] - escape * source;
             remaining += (s->down[i * n + j] + s->a_up[j] * escape * source) / s->a_down[i];
         }
+        if (s->loses) {
+            ratio[i] = remaining - later;
+            continue;
+        }
         /* Where next to nothing remains, both sums are rounding and interpolation: the ratio of the node
          * before, closer to grazing, is carried on. (F = 1 gives 1 all the way.) */
         for (int l = 0; l < LQ_LANES; l++) {
@@ -318,7 +325,7 @@ static void read_energies(const lq_readout *readout, const lq_sylvester *s, cons
             remaining -= c * rest[k];
         }
         for (int i = 0; i < s->nodes; i++) leaves += weight[i] * ratio[i];
-        energy[m] = escaping + remaining * leaves;
+        energy[m] = s->loses ? escaping + remaining - leaves : escaping + remaining * leaves;
     }
 }
 

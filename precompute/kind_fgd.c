@@ -179,7 +179,7 @@ static lq_status slice(const lq_job *job, const void *p, size_t index, double *c
     return status;
 }
 
-const lq_evaluator lq_evaluate_fgd = {"fgd", ALPHA, 1.0, prepare, slice, release};
+const lq_evaluator lq_evaluate_fgd = {"fgd", ALPHA, 10.0, prepare, slice, release};
 
 lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_t count, double *energies,
                          lq_error *error) {

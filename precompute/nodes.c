@@ -25,19 +25,23 @@ double lq_inverse_area(double area) {
 static double map_forward(const lq_cosine_map *map, double mu) {
     if (map->root) return map->scale * sqrt(fmax(map->root * (mu - map->from), 0.0)) + map->shift;
     const double t = map->half_angle ? 2.0 * mu / (1.0 + lq_sine(mu)) : mu;
-    return map->scale * asinh(t * map->inverse_alpha) + map->shift;
+    const double x = asinh(t * map->inverse_alpha);
+    return map->scale * (map->rooted ? sqrt(x) : x) + map->shift;
 }
 
 static double map_inverse(const lq_cosine_map *map, double x) {
     const double root = (x - map->shift) / map->scale;
     if (map->root) return fmin(map->from + map->root * root * root, 1.0);
-    const double t = sinh((x - map->shift) / map->scale) / map->inverse_alpha;
+    const double t = sinh(map->rooted ? root * root : root) / map->inverse_alpha;
     return fmin(map->half_angle ? t / (1.0 + 0.25 * t * t) : t, 1.0);
 }
 
 /* The map of one element: the whole axis, stretched so that the element is [-1, 1]. */
 static lq_cosine_map map_of(double alpha, lq_sense sense, double from, double to) {
-    lq_cosine_map map = {.inverse_alpha = 1.0 / alpha, .scale = 1.0, .half_angle = sense == LQ_RISING};
+    lq_cosine_map map = {.inverse_alpha = 1.0 / alpha,
+                         .scale = 1.0,
+                         .half_angle = sense != LQ_FALLING,
+                         .rooted = sense == LQ_FALLING_ROOTED && from == 0.0};
     const double x0 = map_forward(&map, from), x1 = map_forward(&map, to);
     map.scale = 2.0 / (x1 - x0);
     map.shift = -(x0 + x1) / (x1 - x0);
@@ -156,6 +160,13 @@ void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights) 
     const double angle = acos(fmax(fmin(map_forward(&axis->map[e], mu), 1.0), -1.0));
     for (int m = 0; m < axis->nodes; m++) moments[e * axis->nodes + m] = cos(m * angle);
     lq_node_axis_project(axis, moments, weights);
+}
+
+void lq_node_axis_weights_from_zero(const lq_node_axis *axis, double mu, double *weights) {
+    lq_node_axis_weights(axis, mu, weights);
+    if (element_of(axis, mu) > 0) return;
+    const double above = fmax(1.0 + map_forward(&axis->map[0], mu), 0.0);
+    for (int i = 0; i < axis->nodes; i++) weights[i] *= above / (1.0 + cos(chebyshev_angle(axis->nodes, i)));
 }
 
 void lq_node_axis_cosine_mean(const lq_node_axis *axis, double *weights) {

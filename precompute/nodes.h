@@ -3,6 +3,8 @@
  * Nodes are Chebyshev points of x, which is logarithmic in the cosine down to alpha and linear below:
  * energies change over mu ~ alpha (shadowing) and over mu ~ 1 (Fresnel). Rising rays take twice the tangent
  * of half the elevation for the cosine, because what they hit near the zenith goes like theta, not theta^2.
+ * Falling ones go like theta^3 there and like mu log mu at grazing: rooted, their axis has the half angle too
+ * and, from grazing up, the root of what is logarithmic, in which both are smooth.
  * An axis can be divided at a cosine where the energy changes abruptly (a critical angle); each element has
  * its own points. The axis of a medium between interfaces has no roughness of its own: its elements run in
  * the root of the distance to their lower end, where refraction and roughness of any scale change fastest.
@@ -14,7 +16,7 @@
 
 #include <stdbool.h>
 
-typedef enum lq_sense { LQ_FALLING, LQ_RISING } lq_sense;
+typedef enum lq_sense { LQ_FALLING, LQ_RISING, LQ_FALLING_ROOTED } lq_sense;
 
 enum { LQ_ELEMENTS_MAX = 12 };
 
@@ -64,6 +66,9 @@ void lq_node_axis_project(const lq_node_axis *axis, const double *moments, doubl
 
 /* Interpolation weights at one cosine. */
 void lq_node_axis_weights(const lq_node_axis *axis, double mu, double *weights);
+
+/* The same of a function that is 0 at mu = 0. */
+void lq_node_axis_weights_from_zero(const lq_node_axis *axis, double mu, double *weights);
 
 /* Weights of the mean over cosine-weighted directions, 2 mu dmu, of an axis in roots; they add up to 1. */
 void lq_node_axis_cosine_mean(const lq_node_axis *axis, double *weights);
