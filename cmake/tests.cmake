@@ -53,3 +53,5 @@ foreach(source IN LISTS test_scripts)
   add_test(NAME ${name} COMMAND bash ${source} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   lacquer_test_properties(${name})
 endforeach()
+
+include(cmake/fuzz.cmake)

@@ -47,6 +47,10 @@ lq_status lq_image_to_half(lq_image *image, const char *name, lq_error *error);
 lq_status lq_image_write(const lq_image *image, lq_container container, const char *name, const char *path,
                          lq_error *error);
 
+/* At most so many values can be in the file, by its length and what its container can do: 0 where it is not
+ * there. */
+size_t lq_image_capacity(lq_container container, const char *path);
+
 /* The texels of a file into an image of half floats whose sizes are known. LQ_FORMAT where the file says it
  * has others, or does not hold them. */
 lq_status lq_image_read(lq_image *image, lq_container container, const char *path, lq_error *error);

@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <zstd.h>
 
 enum { RGBA = 4 };
@@ -124,6 +125,17 @@ static lq_status read_numbers(lq_image *image, bool exr, const char *path, lq_er
     else memcpy(image->data, raw.values, raw.count * sizeof *raw.values);
     lq_raw_free(&raw);
     return status;
+}
+
+/* Halves take two bytes, numbers of a text a digit and a comma. zstd has at its densest 128 KiB in four
+ * bytes, deflate 1032 in one. */
+size_t lq_image_capacity(lq_container container, const char *path) {
+    enum { ZSTD_DENSEST = (128 << 10) / 4, DEFLATE_DENSEST = 1032, VALUE = 2 };
+    struct stat info;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return 0;
+    const size_t values = (size_t)info.st_size / VALUE + 1;
+    const bool zstd = container == LQ_CONTAINER_KTX2 || container == LQ_CONTAINER_KTX2_ZSTD;
+    return values * (zstd ? ZSTD_DENSEST : container == LQ_CONTAINER_EXR ? DEFLATE_DENSEST : 1);
 }
 
 lq_status lq_image_read(lq_image *image, lq_container container, const char *path, lq_error *error) {

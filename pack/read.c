@@ -20,6 +20,7 @@
 typedef struct reader {
     const char *folder;
     const lq_shipped *atlas; /* NULL: every image has files of its own */
+    size_t *left;            /* values that images out of the atlas may still have */
     lq_error *error;
 } reader;
 
@@ -56,6 +57,37 @@ static bool is_altered(json_t *checksum, const char *folder, const char *file) {
     char text[9];
     return json_is_string(checksum) && lq_contents_checksum(folder, file, text) &&
            strcmp(text, json_string_value(checksum)) != 0;
+}
+
+/* What the first of the files that will be read can hold; 0: there is none. */
+static size_t capacity_of(const reader *r, json_t *files) {
+    json_t *item;
+    size_t i;
+    json_array_foreach(files, i, item) {
+        const char *file = json_string_value(json_object_get(item, "file"));
+        const lq_container container = file ? container_of(file) : LQ_CONTAINERS;
+        char path[4096];
+        if (container == LQ_CONTAINERS) continue;
+        snprintf(path, sizeof path, "%s/%s", r->folder, file);
+        return lq_image_capacity(container, path);
+    }
+    return 0;
+}
+
+/* Sizes come from a stranger: how many values there can be, of an image with these files or out of the atlas.
+ * A file that is not there is missed when it is read. */
+static size_t room_for(const reader *r, json_t *files) {
+    enum { FEW = 4096 };
+    const size_t room = r->atlas ? *r->left : capacity_of(r, files);
+    return room > FEW ? room : FEW;
+}
+
+/* Values come off what the atlas may give. Four tiles may share its texels, of four values each. */
+static lq_status take_room(const reader *r, const lq_image *image, const char *name) {
+    const size_t values = lq_image_texels(image) * (size_t)image->channels;
+    if (r->atlas && values > *r->left) return refuse(r, name, "tiles of more texels than the atlas has");
+    if (r->atlas) *r->left -= values;
+    return LQ_OK;
 }
 
 /* All files of one image into `image`, whose sizes are set. */
@@ -121,6 +153,8 @@ static lq_status cut_image(const reader *r, json_t *tiles, size_t first, lq_imag
 static lq_status read_image(const reader *r, json_t *files, json_t *tiles, size_t first, lq_image *image,
                             lq_shipped *s) {
     if (!r->atlas) return read_files(r, files, image, s);
+    const lq_status status = take_room(r, image, s->name);
+    if (status != LQ_OK) return status;
     s->files = r->atlas->files;
     s->altered = r->atlas->altered;
     s->differing = r->atlas->differing;
@@ -129,16 +163,19 @@ static lq_status read_image(const reader *r, json_t *files, json_t *tiles, size_
 }
 
 static lq_status read_atlas(reader *r, json_t *item, lq_shipped *atlas) {
-    enum { LARGEST = 16384 };
     json_int_t width, height;
     if (!item) return LQ_OK;
     if (json_unpack(item, "{s:I, s:I}", "width", &width, "height", &height) != 0 || width < 1 || height < 1 ||
-        width > LARGEST || height > LARGEST)
+        width > LQ_TEXTURE_LARGEST || height > LQ_TEXTURE_LARGEST)
         return refuse(r, "atlas", "no width and height");
+    json_t *files = json_object_get(item, "files");
+    if (4 * (size_t)width * (size_t)height > room_for(r, files))
+        return refuse(r, "atlas", "its file cannot hold so many texels");
     snprintf(atlas->name, sizeof atlas->name, "atlas");
     lq_status status =
         lq_image_create(&atlas->texture.image, (size_t)width, (size_t)height, 1, 1, 4, r->error);
-    if (status == LQ_OK) status = read_files(r, json_object_get(item, "files"), &atlas->texture.image, atlas);
+    if (status == LQ_OK) status = read_files(r, files, &atlas->texture.image, atlas);
+    *r->left = 16 * (size_t)width * (size_t)height;
     if (status == LQ_OK) r->atlas = atlas;
     return status;
 }
@@ -169,11 +206,16 @@ static lq_status read_factored(const reader *r, json_t *item, lq_shipped *s) {
     if (!s->factored) return lq_fail(r->error, LQ_NO_MEMORY, "%s: out of memory", s->name);
     if (!structure) return refuse(r, s->name, "no 'structure'; made by an earlier lacquer?");
     lq_error cause = {""};
-    if (lq_factored_from_json(structure, s->factored, &cause) != LQ_OK) return refuse(r, s->name, cause.text);
+    json_t *texture;
+    size_t i, room = r->atlas ? room_for(r, NULL) : 0;
+    json_array_foreach(textures, i, texture) if (!r->atlas) room +=
+        room_for(r, json_object_get(texture, "files"));
+    if (lq_factored_from_json(structure, room, s->factored, &cause) != LQ_OK)
+        return refuse(r, s->name, cause.text);
     lq_status status = LQ_OK;
     for (int a = 0; a < s->kind->axis_count && status == LQ_OK; a++) {
         json_t *axis = json_array_get(json_object_get(item, "table-axes"), (size_t)a);
-        if (axis && lq_axis_from_json(axis, &s->axes[a], &cause) != LQ_OK)
+        if (axis && lq_axis_from_json(axis, LQ_TEXTURE_LARGEST, &s->axes[a], &cause) != LQ_OK)
             status = refuse(r, s->name, cause.text);
     }
     for (int p = 0; p < s->factored->piece_count; p++)
@@ -186,8 +228,8 @@ static lq_status read_factored(const reader *r, json_t *item, lq_shipped *s) {
 
 /* ------------------------------------------------------------------------------------ textures */
 
-/* Axis `a` of the kind: one value, or as the manifest describes the texture's. */
-static lq_status read_axis(const reader *r, json_t *item, const char *name, lq_axis *axis,
+/* One axis: one value, or as the manifest describes the texture's, within `room`, which it divides. */
+static lq_status read_axis(const reader *r, json_t *item, const char *name, size_t *room, lq_axis *axis,
                            const char *table) {
     json_t *fixed = json_object_get(json_object_get(item, "fixed"), name), *described;
     size_t i;
@@ -203,8 +245,10 @@ static lq_status read_axis(const reader *r, json_t *item, const char *name, lq_a
                         "max", &max, "exponent", &exponent) != 0 ||
             size < 2)
             return refuse(r, table, "an axis lacks name, texels, min, max or exponent");
-        if (strcmp(called, name) == 0)
-            return lq_axis_make(axis, name, min, max, (size_t)size, LQ_MAP_POWER, exponent, r->error);
+        if (strcmp(called, name) != 0) continue;
+        if ((size_t)size > *room) return refuse(r, table, "its file cannot hold so many texels");
+        *room /= (size_t)size;
+        return lq_axis_make(axis, name, min, max, (size_t)size, LQ_MAP_POWER, exponent, r->error);
     }
     return refuse(r, table, "an axis of its kind is neither in 'axes' nor in 'fixed'");
 }
@@ -218,17 +262,18 @@ static void spread(const lq_image *image, lq_table *table) {
 
 static lq_status read_texture(const reader *r, json_t *item, lq_shipped *s) {
     lq_axis axes[LQ_MAX_AXES] = {0};
+    json_t *files = json_object_get(item, "files");
+    size_t room = room_for(r, files);
     lq_status status = LQ_OK;
     for (int a = 0; a < s->kind->axis_count && status == LQ_OK; a++)
-        status = read_axis(r, item, s->kind->axes[a].name, &axes[a], s->name);
+        status = read_axis(r, item, s->kind->axes[a].name, &room, &axes[a], s->name);
     if (status == LQ_OK)
         status = lq_table_create(&s->table, axes, s->kind->axis_count, s->kind->channels,
                                  s->kind->channel_count, r->error);
     for (int a = 0; a < s->kind->axis_count; a++) lq_axis_free(&axes[a]);
     if (status == LQ_OK) status = lq_texture_make(&s->texture, s->table, s->name, r->error);
     if (status == LQ_OK)
-        status = read_image(r, json_object_get(item, "files"), json_object_get(item, "tiles"), 0,
-                            &s->texture.image, s);
+        status = read_image(r, files, json_object_get(item, "tiles"), 0, &s->texture.image, s);
     if (status == LQ_OK) spread(&s->texture.image, s->table);
     return status;
 }
@@ -288,6 +333,7 @@ static lq_status read_number(const reader *r, json_t *item, const char *name, in
 static lq_status read_lobes(const reader *r, json_t *item, lq_shipped_material *m) {
     lq_lobes *l = &m->lobes;
     json_t *numbers = json_object_get(item, "numbers");
+    size_t room = room_for(r, NULL);
     lq_status status = LQ_OK;
     *l = (lq_lobes){.material = &m->material, .axis_count = 1 + m->material.range_count};
     for (int k = 0; k < LQ_MATERIAL_NUMBERS && status == LQ_OK; k++)
@@ -296,9 +342,11 @@ static lq_status read_lobes(const reader *r, json_t *item, lq_shipped_material *
     l->max = bound_of(item, "budget-max");
     l->texels = (size_t)(l->channel_count + LQ_LOBES_PER_TEXEL - 1) / LQ_LOBES_PER_TEXEL;
     for (int a = 0; a < l->axis_count && l->channel_count > 0 && status == LQ_OK; a++)
-        status = read_axis(r, item, a == 0 ? "mu" : m->material.ranges[a - 1].name, &l->axes[a], m->name);
+        status =
+            read_axis(r, item, a == 0 ? "mu" : m->material.ranges[a - 1].name, &room, &l->axes[a], m->name);
     if (status != LQ_OK || l->channel_count == 0) return status;
     status = lq_lobes_allocate(l, r->error);
+    if (status == LQ_OK) status = take_room(r, &l->image, m->name);
     return status == LQ_OK ? cut_image(r, json_object_get(item, "tiles"), 0, &l->image, m->name) : status;
 }
 
@@ -337,7 +385,8 @@ bool lq_pack_found(const char *folder) {
 }
 
 lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
-    reader r = {folder, NULL, error};
+    size_t left = 0;
+    reader r = {folder, NULL, &left, error};
     char path[4096];
     json_t *root;
     *pack = (lq_pack){.count = 0};
@@ -350,6 +399,8 @@ lq_status lq_pack_read(lq_pack *pack, const char *folder, lq_error *error) {
     const size_t count = json_array_size(tables);
     if (!name || count == 0 || count > LQ_RECIPE_TABLES)
         status = refuse(&r, "", "not the manifest of a pack");
+    else if (json_integer_value(json_object_get(root, "version")) > LQ_PACK_VERSION)
+        status = refuse(&r, "", "of a later version; accepted: one that this program knows");
     else snprintf(pack->name, sizeof pack->name, "%s", name);
     if (status == LQ_OK) status = read_atlas(&r, json_object_get(root, "atlas"), &pack->atlas);
     if (status == LQ_OK) pack->tables = calloc(count, sizeof *pack->tables);

@@ -86,7 +86,8 @@ static lq_status read_axis(const lq_recipe_reader *r, const char *name, json_t *
         const lq_axis_info *info = &table->kind->axes[a];
         if (strcmp(info->name, name) == 0) {
             if (!json_is_string(value)) return lq_refuse_value(r, name, "\"min:max:n\" or \"min:max:n:map\"");
-            if (lq_axis_parse(&axis, name, json_string_value(value), &why) != LQ_OK)
+            if (lq_axis_parse_within(&axis, name, json_string_value(value), LQ_TEXTURE_LARGEST, &why) !=
+                LQ_OK)
                 return lq_refuse(r, name, why.text);
             lq_axis_free(&table->axes[a]);
             table->axes[a] = axis;

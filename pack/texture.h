@@ -4,7 +4,7 @@
 
 #include "pack/image.h"
 
-enum { LQ_TEXTURE_AXES = 3 };
+enum { LQ_TEXTURE_AXES = 3, LQ_TEXTURE_LARGEST = 16384 }; /* no GPU takes more texels along an axis */
 
 /* Axes of one node are left out: what was fixed there is in the provenance. */
 typedef struct lq_texture {

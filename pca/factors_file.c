@@ -103,7 +103,7 @@ static lq_status read_image(const lq_table *image, lq_factored *factored, const 
         return lq_fail(error, LQ_FORMAT,
                        "%s: a table, not a factored one; accepted is a file made by lacquer pca", path);
     lq_error cause = {""};
-    lq_status status = lq_factored_from_json(text, factored, &cause);
+    lq_status status = lq_factored_from_json(text, lq_table_entries(image), factored, &cause);
     if (status == LQ_OK) status = take_rows(image, factored, &cause);
     if (status == LQ_OK) status = lq_factored_check(factored, &cause);
     if (status != LQ_OK) return lq_fail(error, status, "%s: %s", path, cause.text);

@@ -89,7 +89,7 @@ static const char *value_at(int i) {
     return lq_value_name((lq_value)i);
 }
 
-static lq_status read_texture_axis(json_t *json, lq_texture_axis *axis, lq_error *error) {
+static lq_status read_texture_axis(json_t *json, size_t most, lq_texture_axis *axis, lq_error *error) {
     const char *coordinate;
     json_t *texels;
     json_error_t cause;
@@ -99,10 +99,11 @@ static lq_status read_texture_axis(json_t *json, lq_texture_axis *axis, lq_error
     const int found = find_name(coordinate, LQ_COORDINATES, coordinate_at);
     if (found == LQ_COORDINATES) return wrong("an axis", "unknown coordinate", error);
     axis->coordinate = (lq_coordinate)found;
-    return lq_axis_from_json(texels, &axis->texels, error);
+    return lq_axis_from_json(texels, most, &axis->texels, error);
 }
 
-static lq_status read_factor(json_t *json, lq_factor *factor, lq_error *error) {
+/* What it has comes off `most`. */
+static lq_status read_factor(json_t *json, size_t *most, lq_factor *factor, lq_error *error) {
     json_int_t bases;
     json_t *array;
     json_error_t cause;
@@ -115,10 +116,13 @@ static lq_status read_factor(json_t *json, lq_factor *factor, lq_error *error) {
     lq_status status = LQ_OK;
     double texels = (double)bases;
     for (int a = 0; a < count && status == LQ_OK; a++) {
-        status = read_texture_axis(json_array_get(array, (size_t)a), &axes[a], error);
+        status = read_texture_axis(json_array_get(array, (size_t)a), *most, &axes[a], error);
         texels *= (double)axes[a].texels.size;
     }
     if (status == LQ_OK && texels > TEXELS_MAX) status = wrong("a texture", "too many texels", error);
+    if (status == LQ_OK && texels > (double)*most)
+        status = wrong("a texture", "more texels than there are", error);
+    if (status == LQ_OK) *most -= (size_t)texels;
     if (status == LQ_OK) status = lq_factor_create(factor, axes, count, (size_t)bases, error);
     for (int a = 0; a < count; a++) lq_axis_free(&axes[a].texels);
     return status;
@@ -160,7 +164,7 @@ static bool read_numbers(const json_t *array, double *values, int count) {
     return true;
 }
 
-static lq_status read_piece(json_t *json, int axis_count, lq_piece *piece, lq_error *error) {
+static lq_status read_piece(json_t *json, int axis_count, size_t *most, lq_piece *piece, lq_error *error) {
     const char *value;
     json_t *min, *max, *factors, *streams;
     json_error_t cause;
@@ -175,7 +179,7 @@ static lq_status read_piece(json_t *json, int axis_count, lq_piece *piece, lq_er
         return wrong("a piece", "incomplete", error);
     lq_status status = LQ_OK;
     for (size_t f = 0; f < json_array_size(factors) && status == LQ_OK; f++) {
-        status = read_factor(json_array_get(factors, f), &piece->factors[f], error);
+        status = read_factor(json_array_get(factors, f), most, &piece->factors[f], error);
         piece->factor_count += status == LQ_OK;
     }
     for (size_t k = 0; k < json_array_size(streams) && status == LQ_OK; k++) {
@@ -199,7 +203,7 @@ static lq_status read_axis(json_t *json, lq_factored *factored, lq_error *error)
     return LQ_OK;
 }
 
-static lq_status read_all(json_t *json, lq_factored *factored, lq_error *error) {
+static lq_status read_all(json_t *json, size_t most, lq_factored *factored, lq_error *error) {
     json_t *axes, *pieces;
     json_error_t cause;
     if (json_unpack_ex(json, &cause, 0, "{s:o, s:F, s:F, s:o}", "axes", &axes, "value_min",
@@ -211,15 +215,15 @@ static lq_status read_all(json_t *json, lq_factored *factored, lq_error *error) 
     for (size_t a = 0; a < json_array_size(axes) && status == LQ_OK; a++)
         status = read_axis(json_array_get(axes, a), factored, error);
     for (size_t p = 0; p < json_array_size(pieces) && status == LQ_OK; p++)
-        status = read_piece(json_array_get(pieces, p), factored->axis_count,
+        status = read_piece(json_array_get(pieces, p), factored->axis_count, &most,
                             &factored->pieces[factored->piece_count++], error);
     return status;
 }
 
-lq_status lq_factored_from_json(const char *text, lq_factored *factored, lq_error *error) {
+lq_status lq_factored_from_json(const char *text, size_t most, lq_factored *factored, lq_error *error) {
     json_t *json;
     lq_status status = lq_json_parse(&json, "the structure of the factors", text, strlen(text), error);
-    if (status == LQ_OK) status = read_all(json, factored, error);
+    if (status == LQ_OK) status = read_all(json, most, factored, error);
     json_decref(json);
     return status;
 }

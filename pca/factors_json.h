@@ -8,7 +8,8 @@
 char *lq_factored_to_json(const lq_factored *factored);
 
 /* Fills what the text describes into an empty `factored`, with bases of zeros; what was made when it fails
- * stays in there, for lq_factored_free. The message names no file. */
-lq_status lq_factored_from_json(const char *text, lq_factored *factored, lq_error *error);
+ * stays in there, for lq_factored_free. `most`: of the texel values that lie beside the text; a structure of
+ * more is refused before there is memory for them. The message names no file. */
+lq_status lq_factored_from_json(const char *text, size_t most, lq_factored *factored, lq_error *error);
 
 #endif

@@ -130,10 +130,13 @@ double lq_axis_locate(const lq_axis *axis, double x) {
 
 /* ------------------------------------------------------------------ construction */
 
+static lq_status refuse_size(const char *name, size_t size, size_t most, lq_error *error) {
+    return lq_fail(error, LQ_BAD_INPUT, "axis '%s' of %zu nodes; accepted are 1 to %zu", name, size, most);
+}
+
 static lq_status check_size(const char *name, size_t size, lq_error *error) {
     if (size >= 1 && size <= LQ_MAX_AXIS_SIZE) return LQ_OK;
-    return lq_fail(error, LQ_BAD_INPUT, "axis '%s' of %zu nodes; accepted are 1 to %d", name, size,
-                   LQ_MAX_AXIS_SIZE);
+    return refuse_size(name, size, LQ_MAX_AXIS_SIZE, error);
 }
 
 static lq_status check_range(const lq_axis *axis, lq_error *error) {
@@ -275,7 +278,7 @@ static bool parse_map(const char *text, lq_map *map, double *exponent) {
 }
 
 /* MIN:MAX:N[:MAP]; splits `text` in place. */
-static lq_status parse_range(lq_axis *axis, const char *name, char *text, lq_error *error) {
+static lq_status parse_range(lq_axis *axis, const char *name, char *text, size_t most, lq_error *error) {
     char *parts[4] = {text};
     size_t count = 1;
     for (char *c = text; *c; c++) {
@@ -293,6 +296,7 @@ static lq_status parse_range(lq_axis *axis, const char *name, char *text, lq_err
     if (!parse_count(parts[2], &size)) return refuse(name, parts[2], "is not a number of nodes", error);
     if (count == 4 && !parse_map(parts[3], &map, &exponent))
         return refuse(name, parts[3], "is not a map", error);
+    if (size > most) return refuse_size(name, size, most, error);
     return lq_axis_make(axis, name, min, max, size, map, exponent, error);
 }
 
@@ -317,6 +321,11 @@ static lq_status parse_list(lq_axis *axis, const char *name, char *text, lq_erro
 }
 
 lq_status lq_axis_parse(lq_axis *axis, const char *name, const char *text, lq_error *error) {
+    return lq_axis_parse_within(axis, name, text, LQ_MAX_AXIS_SIZE, error);
+}
+
+lq_status lq_axis_parse_within(lq_axis *axis, const char *name, const char *text, size_t most,
+                               lq_error *error) {
     memset(axis, 0, sizeof *axis);
     lq_status status = lq_name_check("axis", name, error);
     if (status) return status;
@@ -324,7 +333,7 @@ lq_status lq_axis_parse(lq_axis *axis, const char *name, const char *text, lq_er
     char *copy = strdup(text);
     if (!copy) return lq_fail(error, LQ_NO_MEMORY, "axis '%s': no memory", name);
     double value;
-    if (strchr(copy, ':')) status = parse_range(axis, name, copy, error);
+    if (strchr(copy, ':')) status = parse_range(axis, name, copy, most, error);
     else if (strchr(copy, ',')) status = parse_list(axis, name, copy, error);
     else if (parse_number(copy, &value))
         status = lq_axis_make(axis, name, value, value, 1, LQ_MAP_LINEAR, 1, error);

@@ -77,7 +77,8 @@ static lq_status resample(lq_axis *axis, const char *sampling, lq_error *error) 
     return LQ_OK;
 }
 
-static lq_status make_axis(lq_axis *axis, const char *name, const json_t *json, lq_error *error) {
+static lq_status make_axis(lq_axis *axis, const char *name, const json_t *json, size_t most,
+                           lq_error *error) {
     const json_t *value = json_object_get(json, "value");
     const char *nodes = json_string_value(json_object_get(json, "nodes"));
     const json_t *sampling = json_object_get(json, "sampling");
@@ -90,13 +91,13 @@ static lq_status make_axis(lq_axis *axis, const char *name, const json_t *json, 
                        "axis %s has neither \"value\" (a number) nor \"nodes\" (\"0:1:64\")", name);
     if (sampling && !json_is_string(sampling))
         return lq_fail(error, LQ_BAD_INPUT, "axis %s: \"sampling\" is not ends, centres or starts", name);
-    lq_status status = lq_axis_parse(axis, name, nodes, error);
+    lq_status status = lq_axis_parse_within(axis, name, nodes, most, error);
     if (status == LQ_OK && sampling && axis->map != LQ_MAP_CUSTOM && axis->size > 1)
         status = resample(axis, json_string_value(sampling), error);
     return status;
 }
 
-static lq_status take_axis(description *d, const json_t *json, lq_error *error) {
+static lq_status take_axis(description *d, const json_t *json, size_t most, lq_error *error) {
     const char *name = json_string_value(json_object_get(json, "name"));
     const int a = find_axis(d->kind, name);
     if (a < 0)
@@ -104,19 +105,20 @@ static lq_status take_axis(description *d, const json_t *json, lq_error *error) 
                        name ? name : "?", d->kind->id);
     if (d->axes[a].nodes) return lq_fail(error, LQ_BAD_INPUT, "%s: axis %s is there twice", d->path, name);
     lq_error cause = {""};
-    const lq_status status = make_axis(&d->axes[a], name, json, &cause);
+    const lq_status status = make_axis(&d->axes[a], name, json, most, &cause);
     if (status != LQ_OK) return lq_fail(error, LQ_BAD_INPUT, "%s: %s", d->path, cause.text);
     if (!json_object_get(json, "value")) d->in_file[d->file_axes++] = a;
     return LQ_OK;
 }
 
-static lq_status take_axes(description *d, lq_error *error) {
+/* No axis has more nodes than the file has entries. */
+static lq_status take_axes(description *d, size_t entries, lq_error *error) {
     const json_t *list = json_object_get(d->root, "axes");
     if (!json_is_array(list))
         return lq_fail(error, LQ_BAD_INPUT, "%s: \"axes\" is missing: a list, slowest axis first", d->path);
     lq_status status = LQ_OK;
     for (size_t i = 0; status == LQ_OK && i < json_array_size(list); i++)
-        status = take_axis(d, json_array_get(list, i), error);
+        status = take_axis(d, json_array_get(list, i), entries, error);
     for (int a = 0; status == LQ_OK && a < d->kind->axis_count; a++)
         if (!d->axes[a].nodes)
             status = lq_fail(error, LQ_BAD_INPUT, "%s: axis %s is missing; give it nodes or a value", d->path,
@@ -193,12 +195,8 @@ static lq_status check_keys(const description *d, lq_error *error) {
  * ====================================================================================== */
 
 /* Entry by entry in the order of the file, to where the table has it. */
-static lq_status fill(const description *d, const lq_raw *raw, const char *path, lq_table *table,
-                      lq_error *error) {
+static void fill(const description *d, const lq_raw *raw, lq_table *table) {
     const size_t entries = lq_table_entries(table), components = (size_t)d->components;
-    if (raw->count != entries * components)
-        return lq_fail(error, LQ_FORMAT, "%s holds %zu values; its description makes up %zu x %zu", path,
-                       raw->count, entries, components);
     for (size_t i = 0; i < entries; i++) {
         size_t rest = i, at = 0;
         for (int f = d->file_axes - 1; f >= 0; f--) {
@@ -211,17 +209,29 @@ static lq_status fill(const description *d, const lq_raw *raw, const char *path,
         for (int c = 0; c < table->channel_count; c++)
             table->channels[c][at] = raw->values[i * components + (size_t)d->component[c]];
     }
-    return LQ_OK;
 }
 
-static lq_status assemble(const description *d, const char *path, lq_table **table, lq_error *error) {
+/* Before there is memory for the entries that the description makes up. */
+static lq_status check_count(const description *d, const lq_raw *raw, const char *path, lq_error *error) {
+    double entries = 1.0; /* may be 2^120 */
+    for (int a = 0; a < d->kind->axis_count; a++) entries *= (double)d->axes[a].size;
+    if ((double)raw->count == entries * d->components) return LQ_OK;
+    return lq_fail(error, LQ_FORMAT, "%s holds %zu values; its description makes up %.0f x %d", path,
+                   raw->count, entries, d->components);
+}
+
+static lq_status assemble(description *d, const char *path, lq_table **table, lq_error *error) {
     lq_raw raw;
     lq_status status =
         lq_raw_read(&raw, path, d->has_exr_channels ? d->exr_channels : NULL, d->components, error);
     if (status != LQ_OK) return status;
-    status = lq_table_create(table, d->axes, d->kind->axis_count, d->kind->channels, d->kind->channel_count,
-                             error);
-    if (status == LQ_OK) status = fill(d, &raw, path, *table, error);
+    enum { FEW = 4096 }; /* so many are refused by their product, which says more */
+    status = take_axes(d, raw.count > FEW ? raw.count : FEW, error);
+    if (status == LQ_OK) status = check_count(d, &raw, path, error);
+    if (status == LQ_OK)
+        status = lq_table_create(table, d->axes, d->kind->axis_count, d->kind->channels,
+                                 d->kind->channel_count, error);
+    if (status == LQ_OK) fill(d, &raw, *table);
     if (status == LQ_OK) status = set_facts(d, *table, error);
     lq_raw_free(&raw);
     return status;
@@ -233,7 +243,6 @@ lq_status lq_table_read_described(lq_table **table, const char *path, const char
     *table = NULL;
     lq_status status = load(&d, error);
     if (status == LQ_OK) status = check_keys(&d, error);
-    if (status == LQ_OK) status = take_axes(&d, error);
     if (status == LQ_OK) status = take_components(&d, error);
     if (status == LQ_OK) status = assemble(&d, path, table, error);
     if (status != LQ_OK) {

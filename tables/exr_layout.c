@@ -91,7 +91,7 @@ static lq_status parse_nodes(lq_axis *axis, const char *name, json_int_t size, c
     return status;
 }
 
-lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error) {
+lq_status lq_axis_from_json(json_t *json, size_t most, lq_axis *axis, lq_error *error) {
     const char *name, *map_name;
     json_int_t size;
     double min, max, exponent;
@@ -105,19 +105,26 @@ lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error) {
         return lq_fail(error, LQ_FORMAT, "axis '%.40s' has the unknown map '%.40s'", name, map_name);
     if (size < 1 || size > LQ_MAX_AXIS_SIZE)
         return lq_fail(error, LQ_FORMAT, "axis '%.40s' of %lld nodes", name, (long long)size);
+    if ((size_t)size > most)
+        return lq_fail(error, LQ_FORMAT, "axis '%.40s' of %lld nodes; there is room for %zu at most", name,
+                       (long long)size, most);
     if (map == LQ_MAP_CUSTOM) return parse_nodes(axis, name, size, nodes, error);
     return lq_axis_make(axis, name, min, max, (size_t)size, map, exponent, error);
 }
 
-lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_error *error) {
+lq_status lq_exr_parse_axes(const char *text, size_t most, lq_axis *axes, int *count, lq_error *error) {
     *count = 0;
     json_t *array;
     lq_status status = parse_array(&array, text, "axes", LQ_MAX_AXES, error);
     if (status) return status;
     size_t size = json_array_size(array);
     while ((size_t)*count < size && status == LQ_OK) {
-        status = lq_axis_from_json(json_array_get(array, (size_t)*count), &axes[*count], error);
-        if (status == LQ_OK) ++*count;
+        lq_axis *axis = &axes[*count];
+        status = lq_axis_from_json(json_array_get(array, (size_t)*count), most, axis, error);
+        if (status != LQ_OK) break;
+        most /= axis->size; /* at least 1 node fits */
+        most = most > 0 ? most : 1;
+        ++*count;
     }
     json_decref(array);
     if (status == LQ_OK) return LQ_OK;

@@ -28,12 +28,14 @@ char *lq_exr_axes_text(const lq_table *table);
 char *lq_exr_channels_text(const lq_table *table);
 char *lq_exr_facts_text(const lq_table *table);
 
-/* One axis, and back; the message names no file. */
+/* One axis, and back; the message names no file. `most`: of the nodes that what it belongs to can hold; more
+ * are refused before there is memory for them. */
 json_t *lq_axis_to_json(const lq_axis *axis);
-lq_status lq_axis_from_json(json_t *json, lq_axis *axis, lq_error *error);
+lq_status lq_axis_from_json(json_t *json, size_t most, lq_axis *axis, lq_error *error);
 
-/* The axes a JSON text describes; frees what it made when it fails. The message names no file. */
-lq_status lq_exr_parse_axes(const char *text, lq_axis *axes, int *count, lq_error *error);
+/* The axes a JSON text describes, of a table of at most `most` entries; frees what it made when it fails. The
+ * message names no file. */
+lq_status lq_exr_parse_axes(const char *text, size_t most, lq_axis *axes, int *count, lq_error *error);
 
 /* An array of strings, up to `limit` of them. Free with lq_exr_free_names. */
 lq_status lq_exr_parse_names(const char *text, size_t limit, char ***names, size_t *count, lq_error *error);

@@ -151,22 +151,26 @@ static lq_status check_channels(const reader *r, char **names, size_t count, lq_
     return refuse(r, LQ_FORMAT, "its channels are not the float channels its header lists", error);
 }
 
-static lq_status check_window(reader *r, const lq_axis *axes, int axis_count, lq_error *error) {
+static lq_status read_window(reader *r, lq_error *error) {
     exr_attr_box2i_t window;
     exr_result_t result = exr_get_data_window(r->context, 0, &window);
     if (result == EXR_ERR_SUCCESS) result = exr_get_scanlines_per_chunk(r->context, 0, &r->rows_per_chunk);
     if (result != EXR_ERR_SUCCESS) return damaged(r, result, error);
-    double height = 1; /* may be 2^60 */
-    for (int i = 1; i < axis_count; i++) height *= (double)axes[i].size;
-    int64_t width = (int64_t)window.max.x + 1, rows = (int64_t)window.max.y + 1;
-    bool at_origin = window.min.x == 0 && window.min.y == 0;
-    if (!at_origin || width != (int64_t)axes[0].size || (double)rows != height || r->rows_per_chunk < 1)
-        return lq_fail(error, LQ_FORMAT,
-                       "%s: %" PRId64 " x %" PRId64 " values do not match the axes, %zu x %.0f; " ACCEPTED,
-                       r->path, width, rows, axes[0].size, height);
+    const int64_t width = (int64_t)window.max.x + 1, rows = (int64_t)window.max.y + 1;
+    if (window.min.x != 0 || window.min.y != 0 || width < 1 || rows < 1 || r->rows_per_chunk < 1)
+        return lq_fail(error, LQ_FORMAT, "%s: %" PRId64 " x %" PRId64 " values are no table; " ACCEPTED,
+                       r->path, width, rows);
     r->width = (size_t)width;
     r->height = (size_t)rows;
     return LQ_OK;
+}
+
+static lq_status check_shape(const reader *r, const lq_axis *axes, int axis_count, lq_error *error) {
+    double height = 1; /* may be 2^60 */
+    for (int i = 1; i < axis_count; i++) height *= (double)axes[i].size;
+    if (r->width == axes[0].size && (double)r->height == height) return LQ_OK;
+    return lq_fail(error, LQ_FORMAT, "%s: %zu x %zu values do not match the axes, %zu x %.0f; " ACCEPTED,
+                   r->path, r->width, r->height, axes[0].size, height);
 }
 
 /* Before memory is asked for: could so few bytes hold that many values? */
@@ -190,7 +194,7 @@ static lq_status make_table(reader *r, const lq_axis *axes, int axis_count, lq_e
     lq_status status = lq_exr_parse_names(text, LQ_MAX_CHANNELS, &names, &count, error);
     if (status) return refuse(r, status, error ? error->text : "", error);
     status = check_channels(r, names, count, error);
-    if (status == LQ_OK) status = check_window(r, axes, axis_count, error);
+    if (status == LQ_OK) status = check_shape(r, axes, axis_count, error);
     if (status == LQ_OK) status = check_capacity(r, count, error);
     if (status == LQ_OK) {
         status = lq_table_create(&r->table, axes, axis_count, (const char *const *)names, (int)count, error);
@@ -206,7 +210,12 @@ static lq_status read_axes(reader *r, lq_error *error) {
     if (!text) return LQ_FORMAT;
     lq_axis axes[LQ_MAX_AXES];
     int count;
-    lq_status status = lq_exr_parse_axes(text, axes, &count, error);
+    lq_status status = read_window(r, error);
+    if (status == LQ_OK) status = check_capacity(r, 1, error);
+    if (status != LQ_OK) return status;
+    enum { FEW = 4096 }; /* so many are refused by their product, which says more */
+    const size_t entries = r->width * r->height;
+    status = lq_exr_parse_axes(text, entries > FEW ? entries : FEW, axes, &count, error);
     if (status) return refuse(r, status, error ? error->text : "", error);
     if (count == 0) return refuse(r, LQ_FORMAT, "it lists no axis", error);
     status = make_table(r, axes, count, error);
@@ -305,6 +314,9 @@ static lq_status check_sum(const reader *r, lq_error *error) {
     if (status) return refuse(r, status, error ? error->text : "", error);
     snprintf(digits, sizeof digits, "%08x", (unsigned)sum);
     if (strcmp(stored, digits) == 0) return LQ_OK;
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    return LQ_OK; /* what reads a table is to be reached by changed ones, too */
+#endif
     return refuse(r, LQ_FORMAT, "damaged or edited: the checksum does not match", error);
 }
 

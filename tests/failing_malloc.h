@@ -19,30 +19,34 @@
 /* Allocations left before one fails; negative: none will. What is tested uses one thread. */
 static volatile long countdown = -1; /* volatile: the compiler believes that malloc does not read it */
 
+/* The largest that was asked for since somebody set it to 0. */
+static volatile size_t largest_asked __attribute__((unused));
+
 #if CAN_FAIL
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *block, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 
-static bool fails_now(void) {
+static bool fails_now(size_t size) {
+    if (size > largest_asked) largest_asked = size;
     return countdown >= 0 && countdown-- == 0;
 }
 
 void *malloc(size_t size) {
-    return fails_now() ? NULL : __libc_malloc(size);
+    return fails_now(size) ? NULL : __libc_malloc(size);
 }
 
 void *calloc(size_t count, size_t size) {
-    return fails_now() ? NULL : __libc_calloc(count, size);
+    return fails_now(count * size) ? NULL : __libc_calloc(count, size);
 }
 
 void *realloc(void *block, size_t size) {
-    return fails_now() ? NULL : __libc_realloc(block, size);
+    return fails_now(size) ? NULL : __libc_realloc(block, size);
 }
 
 int posix_memalign(void **block, size_t alignment, size_t size) {
-    void *got = fails_now() ? NULL : __libc_memalign(alignment, size);
+    void *got = fails_now(size) ? NULL : __libc_memalign(alignment, size);
     if (!got) return ENOMEM;
     *block = got;
     return 0;

@@ -11,6 +11,7 @@
 #include "validate/stream.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,7 +95,7 @@ static lq_status copy_factored(const lq_factored *from, lq_factored **copy, lq_e
     lq_factored *made = calloc(1, sizeof *made);
     *copy = made;
     lq_status status = structure && made
-                           ? lq_factored_from_json(structure, made, error)
+                           ? lq_factored_from_json(structure, SIZE_MAX, made, error)
                            : lq_fail(error, LQ_NO_MEMORY, "no memory for a copy of the factors");
     free(structure);
     for (int p = 0; status == LQ_OK && p < from->piece_count; p++)

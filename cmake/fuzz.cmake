@@ -1,0 +1,25 @@
+# tests/fuzz: every reader of the project in one program. The preset `fuzz` links it with libFuzzer (scripts/fuzz runs
+# that); elsewhere it replays the corpora and changes of them, as a test.
+option(LACQUER_FUZZ "Link lacquer-fuzz with libFuzzer (clang)" OFF)
+
+file(GLOB fuzz_readers CONFIGURE_DEPENDS "tests/fuzz/fuzz.c" "tests/fuzz/readers_*.c")
+set(fuzz_engine tests/fuzz/engine_replay.c)
+if(LACQUER_FUZZ)
+  set(fuzz_engine tests/fuzz/engine_libfuzzer.c)
+endif()
+add_executable(lacquer-fuzz ${fuzz_readers} ${fuzz_engine} $<TARGET_OBJECTS:lacquer-verbs>)
+lacquer_warnings(lacquer-fuzz)
+target_compile_definitions(lacquer-fuzz PRIVATE ${system_interfaces})
+target_include_directories(lacquer-fuzz PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(lacquer-fuzz PRIVATE lacquer-library PkgConfig::JANSSON OpenMP::OpenMP_C m)
+if(LACQUER_FUZZ)
+  target_link_options(lacquer-fuzz PRIVATE -fsanitize=fuzzer)
+else()
+  # Under a sanitizer a fault is a failure; elsewhere the corpora alone.
+  set(fuzz_changes 100)
+  if(CMAKE_C_FLAGS MATCHES "fsanitize=address")
+    set(fuzz_changes 3000)
+  endif()
+  add_test(NAME test_fuzz COMMAND lacquer-fuzz ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus ${fuzz_changes})
+  lacquer_test_properties(test_fuzz)
+endif()
