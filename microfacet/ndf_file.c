@@ -10,11 +10,9 @@
 #include "microfacet/ndf_file.h"
 
 #include "microfacet/ndf_samples.h"
-#include "system/input.h"
 #include "system/number.h"
 #include "system/status.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,9 +24,8 @@ enum { COLUMNS_MAX = 64, ROWS_MAX = 1000000 };
 
 typedef struct reader {
     const char *path;
-    FILE *in;
-    char *text; /* of the line read last */
-    size_t capacity, line;
+    char *text, *next; /* the line read last; what is after it, NULL at the end */
+    size_t line;
     lq_error *error;
     size_t columns; /* of D; 0: not known yet */
     double alpha[COLUMNS_MAX];
@@ -44,8 +41,10 @@ static lq_status bad_line(const reader *r, const char *what, const char *value) 
 }
 
 static bool read_line(reader *r) {
-    for (ssize_t length; (length = getline(&r->text, &r->capacity, r->in)) >= 0;) {
+    while (r->next && *r->next) {
+        r->text = strsep(&r->next, "\n");
         r->line++;
+        size_t length = strlen(r->text);
         while (length > 0 && strchr(" \t\r\n", r->text[length - 1])) r->text[--length] = '\0';
         const char *start = r->text + strspn(r->text, " \t");
         if (*start && *start != '#') return true;
@@ -150,8 +149,7 @@ static lq_status read_all(reader *r) {
     if (!read_line(r))
         return lq_fail(r->error, LQ_BAD_INPUT, "%s: empty; rows of theta,D are expected", r->path);
     static const char byte_order_mark[] = "\xEF\xBB\xBF";
-    if (r->line == 1 && strncmp(r->text, byte_order_mark, 3) == 0)
-        memmove(r->text, r->text + 3, strlen(r->text + 3) + 1);
+    if (r->line == 1 && strncmp(r->text, byte_order_mark, 3) == 0) r->text += 3;
     double first;
     char *end;
     first = lq_strtod(r->text, &end);
@@ -168,8 +166,6 @@ static lq_status read_all(reader *r) {
         status = read_row(r);
     }
     while (status == LQ_OK && read_line(r)) status = read_row(r);
-    if (status == LQ_OK && ferror(r->in))
-        return lq_fail(r->error, LQ_IO, "cannot read %s: %s", r->path, strerror(errno));
     if (status == LQ_OK && r->rows < LQ_NDF_SAMPLES_MIN)
         return lq_fail(r->error, LQ_BAD_INPUT, "%s:%zu: %zu angles, at least %d are needed", r->path, r->line,
                        r->rows, LQ_NDF_SAMPLES_MIN);
@@ -213,15 +209,12 @@ lq_status lq_ndf_file_open(const lq_ndf **ndf, const char *text, lq_error *error
     lq_ndf_path path;
     lq_status status = lq_ndf_path_make(&path, "file", text, error);
     if (status == LQ_OK) {
-        reader r = {.path = path.path, .error = error};
-        status = lq_input_open(&r.in, path.path, LQ_NDF_FILE_LARGEST, error);
-        if (status == LQ_OK) {
-            status = read_all(&r);
-            if (status == LQ_OK) status = make(&r, ndf, path.id);
-            fclose(r.in);
-        }
+        reader r = {.path = path.path, .next = path.bytes, .error = error};
+        if (strlen(path.bytes) != path.size)
+            status = lq_fail(error, LQ_BAD_INPUT, "%s: holds a NUL byte; this is not CSV text", path.path);
+        if (status == LQ_OK) status = read_all(&r);
+        if (status == LQ_OK) status = make(&r, ndf, path.id);
         free(r.values);
-        free(r.text);
     }
     lq_ndf_path_free(&path);
     return status;

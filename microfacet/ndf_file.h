@@ -11,9 +11,12 @@ lq_status lq_ndf_plugin_open(const lq_ndf **ndf, const char *text, lq_error *err
 /* More is no table of samples and no plugin: it is refused before it is read. */
 enum { LQ_NDF_FILE_LARGEST = 1 << 28 };
 
-/* PATH and HASH apart, the content checked against it; `id` becomes "family:PATH#HASH". Free both. */
+/* PATH and HASH apart, the content checked against it; `id` becomes "family:PATH#HASH". The content is read
+ * once: what was hashed is what is used, whatever happens to the file meanwhile. Free it. */
 typedef struct lq_ndf_path {
     char *path, *id;
+    char *bytes; /* a zero byte behind them */
+    size_t size;
 } lq_ndf_path;
 
 lq_status lq_ndf_path_make(lq_ndf_path *path, const char *family, const char *text, lq_error *error);

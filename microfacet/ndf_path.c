@@ -3,7 +3,6 @@
 #include "system/input.h"
 #include "system/status.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,17 +11,18 @@
 enum { HASH_DIGITS = 16 };
 
 /* FNV-1a, 64 bits: tells a changed file from the same, not a forged one. */
-static lq_status hash_file(const char *path, uint64_t *hash, lq_error *error) {
-    FILE *in;
-    const lq_status status = lq_input_open(&in, path, LQ_NDF_FILE_LARGEST, error);
+static uint64_t hash_bytes(const char *bytes, size_t size) {
+    uint64_t hash = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < size; i++) hash = (hash ^ (unsigned char)bytes[i]) * 0x100000001B3u;
+    return hash;
+}
+
+static lq_status read_bytes(lq_ndf_path *path, lq_error *error) {
+    FILE *in; /* refuses a file that is too large to be one */
+    const lq_status status = lq_input_open(&in, path->path, LQ_NDF_FILE_LARGEST, error);
     if (status != LQ_OK) return status;
-    *hash = 0xCBF29CE484222325u;
-    unsigned char block[4096];
-    for (size_t count; (count = fread(block, 1, sizeof block, in)) > 0;)
-        for (size_t i = 0; i < count; i++) *hash = (*hash ^ block[i]) * 0x100000001B3u;
-    const int failed = ferror(in), cause = errno;
     fclose(in);
-    return failed ? lq_fail(error, LQ_IO, "cannot read %s: %s", path, strerror(cause)) : LQ_OK;
+    return lq_input_read(path->path, &path->bytes, &path->size, error);
 }
 
 /* The end of PATH in PATH#HASH; the whole length where there is no such hash. */
@@ -34,7 +34,7 @@ static size_t path_length(const char *text) {
 }
 
 lq_status lq_ndf_path_make(lq_ndf_path *path, const char *family, const char *text, lq_error *error) {
-    *path = (lq_ndf_path){NULL, NULL};
+    *path = (lq_ndf_path){.path = NULL};
     const size_t length = text ? path_length(text) : 0;
     if (length == 0)
         return lq_fail(error, LQ_BAD_INPUT, "NDF '%s' needs a path; write %s:PATH", family, family);
@@ -42,10 +42,9 @@ lq_status lq_ndf_path_make(lq_ndf_path *path, const char *family, const char *te
     path->path = strndup(text, length);
     path->id = malloc(room);
     if (!path->path || !path->id) return lq_fail(error, LQ_NO_MEMORY, "no memory for a path");
-    uint64_t hash;
-    const lq_status status = hash_file(path->path, &hash, error);
+    const lq_status status = read_bytes(path, error);
     if (status != LQ_OK) return status;
-    snprintf(path->id, room, "%s:%s#%016" PRIx64, family, path->path, hash);
+    snprintf(path->id, room, "%s:%s#%016" PRIx64, family, path->path, hash_bytes(path->bytes, path->size));
     const char *wanted = text + length, *found = path->id + strlen(path->id) - HASH_DIGITS;
     if (*wanted && strcmp(wanted + 1, found) != 0)
         return lq_fail(error, LQ_BAD_INPUT, "%s has changed: its hash is %s, not %s", path->path, found,
@@ -56,5 +55,6 @@ lq_status lq_ndf_path_make(lq_ndf_path *path, const char *family, const char *te
 void lq_ndf_path_free(lq_ndf_path *path) {
     free(path->path);
     free(path->id);
-    *path = (lq_ndf_path){NULL, NULL};
+    free(path->bytes);
+    *path = (lq_ndf_path){.path = NULL};
 }

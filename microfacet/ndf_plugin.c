@@ -1,19 +1,24 @@
 /* NDFs compiled by their user: a shared object that exports one function (lacquer.h, "Plugins"). */
+#define _GNU_SOURCE /* memfd_create */
 #include "microfacet/ndf_file.h"
 #include "microfacet/profile.h"
 #include "system/number.h"
 #include "system/status.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 typedef struct loaded {
     lq_profiled profiled;
     const lq_ndf_plugin *plugin;
     void *object;
+    int file; /* that it was loaded from */
     lq_ndf_path path;
     char note[LQ_MESSAGE_SIZE];
 } loaded;
@@ -24,27 +29,56 @@ static void shape(const lq_profiled *of, double alpha, size_t count, const doubl
     l->plugin->density(alpha, count, cos2, sin2, d);
 }
 
+/* What was hashed, in a file of this process's own that nobody can write: the one at the path may be another
+ * by now. -1: not to be had. */
+static int private_copy(const lq_ndf_path *path) {
+    enum { SEALS = F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE };
+    const int file = memfd_create("lacquer-plugin", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    size_t done = 0;
+    for (ssize_t wrote = 1; file >= 0 && wrote > 0 && done<path->size; done += wrote> 0 ? (size_t)wrote : 0)
+        wrote = write(file, path->bytes + done, path->size - done);
+    if (file < 0 || (done == path->size && fcntl(file, F_ADD_SEALS, SEALS) == 0)) return file;
+    close(file);
+    return -1;
+}
+
+/* The loader knows a library by its name, which is the number of the open file: that stays open as long as
+ * the library is there, or another one would be taken for it. */
+static lq_status load(loaded *l, lq_error *error) {
+    char name[64];
+    l->file = private_copy(&l->path);
+    if (l->file < 0) return lq_fail(error, LQ_IO, "%s is not loaded: no memory file: %m", l->path.path);
+    snprintf(name, sizeof name, "/proc/self/fd/%d", l->file);
+    l->object = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (l->object) return LQ_OK;
+    const char *cause = dlerror(),
+               *colon = strncmp(cause, name, strlen(name)) == 0 ? strstr(cause, ": ") : NULL;
+    return lq_fail(error, LQ_FORMAT, "%s is not loaded: %s", l->path.path, colon ? colon + 2 : cause);
+}
+
+/* Some libraries stay loaded: those keep their file. */
+static void unload(loaded *l) {
+    char name[64];
+    snprintf(name, sizeof name, "/proc/self/fd/%d", l->file);
+    if (l->object) dlclose(l->object);
+    void *kept = l->object ? dlopen(name, RTLD_LAZY | RTLD_NOLOAD) : NULL;
+    if (kept) dlclose(kept);
+    else if (l->file >= 0) close(l->file);
+}
+
 static void release(lq_ndf *ndf) {
     loaded *l = (loaded *)ndf->parameters;
     lq_profiled_free(&l->profiled);
-    if (l->object) dlclose(l->object);
+    unload(l);
     lq_ndf_path_free(&l->path);
     free(l);
-}
-
-/* dlopen searches for names without a slash; ours are paths. */
-static void *load(const char *path) {
-    char here[4096];
-    if (strchr(path, '/')) return dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    snprintf(here, sizeof here, "./%s", path);
-    return dlopen(here, RTLD_NOW | RTLD_LOCAL);
 }
 
 static lq_status find(loaded *l, lq_error *error) {
     const char *path = l->path.path;
     const lq_ndf_plugin *(*describe)(void) = NULL;
-    l->object = load(path);
-    if (!l->object) return lq_fail(error, LQ_FORMAT, "%s is not loaded: %s", path, dlerror());
+    const lq_status status = load(l, error);
+    if (status != LQ_OK) return status;
     void *symbol = dlsym(l->object, "lacquer_ndf_plugin");
     if (!symbol)
         return lq_fail(error, LQ_FORMAT, "%s is no NDF plugin: it lacks the function lacquer_ndf_plugin",
@@ -104,6 +138,7 @@ lq_status lq_ndf_plugin_open(const lq_ndf **ndf, const char *text, lq_error *err
     loaded *l = calloc(1, sizeof *l);
     if (!l) return lq_fail(error, LQ_NO_MEMORY, "no memory for an NDF");
     l->profiled.ndf.parameters = l;
+    l->file = -1;
     lq_status status = lq_ndf_path_make(&l->path, "plugin", text, error);
     if (status == LQ_OK) status = find(l, error);
     if (status == LQ_OK) status = check(l, error);

@@ -37,7 +37,14 @@ bool cli_read_ndf(void *field, const char *value) {
 
 bool cli_read_trust(void *field, const char *value) {
     cli_settings settings;
+    const char *needs_no_trust;
     if (!cli_read_ndf(&settings, value)) return false;
+    if (lq_ndf_trusted(value, NULL, &needs_no_trust, NULL) == LQ_OK) {
+        cli_message("--ndf has no effect with %s, which opens no file; accepted there: the file: or plugin: "
+                    "that is recorded",
+                    value);
+        return false;
+    }
     ((lq_trust *)field)->ndf = settings.settings.ndf;
     return true;
 }

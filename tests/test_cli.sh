@@ -141,7 +141,8 @@ idle() {
 tries=yes
 idle eval ndf scattering masking tolerance threads orders -- --from files/empty
 idle info kind ndf -- files/empty
-idle pca separate scheme value bases critical texels -- files/empty --budget 1e-3 -o /proc/x
+idle pca separate scheme value bases critical texels ndf -- files/empty --budget 1e-3 -o /proc/x
+idle pca random seed ndf allow-plugin -- files/empty --nodes-only -o /proc/x
 idle fit texture samples -- hg -o /proc/x
 idle fit samples -- variance -o /proc/x
 idle fit report texture snippet -- bounces -o /proc/x

@@ -35,7 +35,7 @@ END
 }
 make() { # NDF NAME: a table, factors, a pack, a recipe and a description that record it
     "$LACQUER" precompute albedo --ndf "$1" --tolerance 1e-3 --axis mu=0.02:1:8 "${axis[@]}" -o "$2.exr" >/dev/null 2>&1
-    "$LACQUER" pca "$2.exr" --ndf "$1" --nodes-only --separate mu:1 -o "$2-factors.exr" >/dev/null 2>&1
+    "$LACQUER" pca "$2.exr" --nodes-only --separate mu:1 -o "$2-factors.exr" >/dev/null 2>&1
     recipe "$1" >"$2.json"
     "$LACQUER" pack "$2.json" --ndf "$1" -o "$2-pack" >/dev/null 2>&1
     cp "$2.exr" "in-$2.exr"
@@ -65,7 +65,13 @@ for ndf in plugin:evil.so file:samples.csv; do
     refused validate folder --points 100
     refused pca kept.exr --separate mu:1 -o x.exr
     refused pack kept.json -o x
-    refused pack kept.json --ndf ggx -o x
+    for verb in "pack kept.json" "pca kept.exr --separate mu:1"; do # what opens nothing is no trust
+        code=0
+        # shellcheck disable=SC2086 # a verb and its words
+        "$LACQUER" $verb --ndf ggx -o x >out.txt 2>message.txt || code=$?
+        [ "$code" = 1 ] && [ "$(wc -l <message.txt)" = 1 ] && grep -q -- '--ndf has no effect with ggx' message.txt ||
+            fail "$verb --ndf ggx: exit $code, $(cat message.txt)"
+    done
     for verb in info "eval albedo mu=0.5 alpha=0.4 --from"; do # these open no NDF
         rm -f "$PLANTED"
         # shellcheck disable=SC2086 # a verb and its words
@@ -79,6 +85,20 @@ for ndf in plugin:evil.so file:samples.csv; do
 done
 ndf=plugin:evil.so
 make $ndf kept
+
+# What was hashed is what is loaded, not what stands at the path a moment later: a library whose constructor says where
+# it was loaded from.
+{
+    echo '#define _GNU_SOURCE'
+    echo '#include <dlfcn.h>'
+    cat "$LACQUER_SOURCE/docs/ndf_plugin.c"
+    echo '#include <stdio.h>'
+    echo '__attribute__((constructor)) static void say(void) {'
+    echo 'Dl_info here; if (dladdr((void *)say, &here)) fprintf(stderr, "%s\n", here.dli_fname); }'
+} >where.c
+"${CC:-cc}" -std=c11 -O2 -shared -fPIC -I "$LACQUER_SOURCE" where.c -o where.so -lm
+"$LACQUER" eval albedo mu=0.5 alpha=0.4 --ndf plugin:where.so >out.txt 2>message.txt || fail "$(cat message.txt)"
+grep -q '^/proc/self/fd/' message.txt || fail "the library at the path is loaded: $(cat message.txt)"
 "$LACQUER" validate kept.exr --allow-plugin --points 4 >/dev/null 2>&1 || fail "allowed, but refused"
 [ -e "$PLANTED" ] || fail "the plugin of this test plants nothing"
 

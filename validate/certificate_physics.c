@@ -23,10 +23,10 @@ static void check_entries(lq_certified *certified) {
     char at[160];
     lq_point_text(s->origin.kind, found.at, at, sizeof at);
     if (found.faults == 0)
-        lq_check_add(certified, "range stored", found.worst, LQ_RANGE_SLACK, "%zu entries", found.looked_at);
+        lq_check_add(certified, "range stored", found.worst, LQ_RANGE_SLACK, "%zu values", found.looked_at);
     else
         lq_check_add(certified, "range stored", found.worst, LQ_RANGE_SLACK,
-                     "%zu of %zu entries; the worst is %g in %s at %s", found.faults, found.looked_at,
+                     "%zu of %zu values; the worst is %g in %s at %s", found.faults, found.looked_at,
                      found.value, s->table->channel_names[found.channel], at);
 }
 

@@ -41,8 +41,11 @@ enum {
     OPTION_SVG
 };
 
-/* Modes: factors as asked for, or searched within an error or a size. */
-enum { ASKED = 1, SEARCHED = 2 };
+/* Modes: factors as asked for, or searched within an error or a size; each with errors against the solver or
+ * against what is in files. */
+enum { ASKED_SOLVED = 1, SEARCHED_SOLVED = 2, ASKED_STORED = 4, SEARCHED_STORED = 8 };
+enum { ASKED = ASKED_SOLVED | ASKED_STORED, SEARCHED = SEARCHED_SOLVED | SEARCHED_STORED };
+enum { SOLVED = ASKED_SOLVED | SEARCHED_SOLVED, STORED = ASKED_STORED | SEARCHED_STORED };
 
 static const char *const schemes[] = {[LQ_SEQUENTIAL] = "sequential", [LQ_JOINT] = "joint", NULL};
 static const char *const value_names[] = {
@@ -81,9 +84,9 @@ static const cli_option options[] = {
     {OPTION_CHANNEL, "channel", "NAME", "which channel of the table (default: the first)",
      CLI_TEXT(pca_request, channel)},
     {OPTION_RANDOM, "random", "N", "exact values at N random alpha and eta, 2 N of others (default 12)",
-     CLI_COUNT(pca_request, random, 2, 128)},
+     CLI_COUNT(pca_request, random, 2, 128), .modes = SOLVED},
     {OPTION_SEED, "seed", "N", "of the random points (default 1)",
-     CLI_COUNT(pca_request, seed, 0, (size_t)1 << 40)},
+     CLI_COUNT(pca_request, seed, 0, (size_t)1 << 40), .modes = SOLVED},
     {OPTION_NODES, "nodes-only", NULL, "errors at the table's own nodes: no solver is run",
      CLI_FLAG(pca_request, nodes_only)},
     {OPTION_AGAINST, "against", "FILE", "errors at the nodes of this table of the same axes",
@@ -92,7 +95,7 @@ static const cli_option options[] = {
      .silent = true},
     {OPTION_SVG, "svg", "FILE", "error against bytes", CLI_TEXT(pca_request, svg), .silent = true},
     CLI_THREADS_OPTION(pca_request, 0),
-    CLI_TRUST_OPTIONS(pca_request, 0),
+    CLI_TRUST_OPTIONS(pca_request, SOLVED),
     {0},
 };
 
@@ -109,6 +112,13 @@ static bool searches(const pca_request *r) {
 }
 
 static bool suits(const pca_request *r, const cli_given *given) {
+    const bool stored = r->nodes_only || r->against;
+    if (r->nodes_only && r->against) {
+        cli_message("both --nodes-only and --against; accepted is one of them");
+        return false;
+    }
+    if (stored && !cli_suits(given, STORED, r->against ? "with --against" : "with --nodes-only"))
+        return false;
     if (searches(r)) return cli_suits(given, SEARCHED, "with --budget and --bytes, which search it");
     return cli_suits(given, ASKED, "without --budget and --bytes");
 }

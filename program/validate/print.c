@@ -64,7 +64,7 @@ void validate_print_text(const validate_job *job) {
     print_head(job);
     print_errors(job);
     if (job->request.walk) print_scores(job);
-    printf("\nall %zu entries: %zu not finite or out of range; %zu that stick out of their neighbours were "
+    printf("\nall %zu values: %zu not finite or out of range; %zu that stick out of their neighbours were "
            "compared\n",
            job->entries.looked_at, job->entries.faults, job->suspects);
     const char *complaint = validate_complaint(job);
@@ -117,7 +117,7 @@ bool validate_print_json(const validate_job *job) {
     for (int k = 0; k < VALIDATE_LISTS; k++)
         if (job->lists[k].used)
             lq_json_set(&root, job->lists[k].key, list_json(job, &job->lists[k], k >= STORED_WALK));
-    lq_json_set(&root, "entries",
+    lq_json_set(&root, "values",
                 json_pack("{s:I, s:I, s:I}", "looked_at", (json_int_t)job->entries.looked_at, "faults",
                           (json_int_t)job->entries.faults, "sticking_out", (json_int_t)job->suspects));
     const char *complaint = validate_complaint(job);
