@@ -1,10 +1,13 @@
 /* output.c - finds out before the work whether its result can be written. */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "program/output.h"
 
 #include "program/message.h"
+#include "system/leftover.h"
 #include "system/output.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,12 +20,14 @@ const char *cli_basename(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-/* Whether a new file can be made in `folder`. Trying is the only test that also holds for root,
- * read-only mounts and folders of /proc. */
+/* Whether a new file can be made in `folder`. Trying is the only test that also holds for root, read-only
+ * mounts and folders of /proc; a file without a name leaves nothing, even after a kill. */
 static bool takes_files(const char *folder) {
     char probe[PATH_MAX];
-    snprintf(probe, sizeof probe, "%s/.lacquer-XXXXXX", folder);
-    int file = mkstemp(probe);
+    int file = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+    if (file >= 0) return close(file) == 0;
+    snprintf(probe, sizeof probe, "%s/" LQ_TEMPORARY "%ld-0", folder, (long)getpid());
+    file = open(probe, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
     if (file < 0) return false;
     close(file);
     unlink(probe);

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "system/leftover.h"
 #include "system/number.h"
 #include "system/status.h"
 
@@ -22,10 +23,10 @@ enum { BUFFER_SIZE = 1 << 16 };
 enum { MAX_ATTEMPTS = 1000 };
 
 struct lq_output {
-    char *path;      /* as the caller wrote it: messages */
-    char *target;    /* `path` with links followed: what is replaced */
-    char *temporary; /* room for a name beside `target`; empty while there is no such file */
-    int file;
+    char *path;        /* as the caller wrote it: messages */
+    char *target;      /* `path` with links followed: what is replaced */
+    char *temporary;   /* room for a name beside `target`; empty while there is no such file */
+    int file, lock;    /* of the temporary, as long as it has a name; -1: none */
     bool direct;       /* a device or pipe: no temporary, no rename */
     uint64_t appended; /* bytes a pipe has taken through lq_output_write_at */
     size_t used;
@@ -43,7 +44,7 @@ static size_t folder_length(const char *path) {
 static void name_temporary(lq_output *output, int attempt) {
     size_t length = folder_length(output->target);
     memcpy(output->temporary, output->target, length);
-    sprintf(output->temporary + length, ".lacquer-%ld-%d", (long)getpid(), attempt);
+    sprintf(output->temporary + length, LQ_TEMPORARY "%ld-%d", (long)getpid(), attempt);
 }
 
 static lq_status refuse_open(const char *path, int cause, lq_error *error) {
@@ -99,11 +100,25 @@ static int open_unnamed(const char *target) {
     return -1;
 }
 
+/* Another run may take the file for a leftover until it is locked. */
+static int open_locked(lq_output *output) {
+    struct stat info;
+    const int file = open(output->temporary, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (file < 0) return -1;
+    output->lock = lq_leftover_lock(file);
+    if (fstat(file, &info) != 0 || info.st_nlink > 0) return file;
+    close(file);
+    if (output->lock >= 0) close(output->lock);
+    output->lock = -1;
+    errno = EEXIST;
+    return -1;
+}
+
 static int open_named(lq_output *output) {
     int file = -1;
     for (int i = 0; i < MAX_ATTEMPTS && file < 0; i++) {
         name_temporary(output, i);
-        file = open(output->temporary, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        file = open_locked(output);
         if (file < 0 && errno != EEXIST) break;
     }
     if (file < 0) *output->temporary = '\0';
@@ -139,6 +154,7 @@ static lq_status open_file(lq_output *output, lq_error *error) {
         return lq_fail(error, LQ_IO, "%s: cannot open it: %s; accepted is a file that can be written",
                        output->path, strerror(errno));
     }
+    lq_leftovers_clear(output->target, folder_length(output->target));
     output->file = above_streams(open_unnamed(output->target));
     if (output->file < 0) output->file = above_streams(open_named(output));
     return output->file >= 0 ? LQ_OK : refuse_open(output->path, errno, error);
@@ -152,7 +168,7 @@ lq_status lq_output_open(lq_output **output, const char *path, lq_error *error) 
         free(made);
         return lq_fail(error, LQ_NO_MEMORY, "%s: no memory to write it", path);
     }
-    made->file = -1;
+    made->file = made->lock = -1;
     lq_status status = inspect(made, error);
     if (status == LQ_OK) status = open_file(made, error);
     if (status) lq_output_abandon(made);
@@ -244,6 +260,7 @@ lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, 
 static int link_unnamed(lq_output *output) {
     char link[64];
     snprintf(link, sizeof link, "/proc/self/fd/%d", output->file);
+    output->lock = lq_leftover_lock(output->file);
     for (int i = 0; i < MAX_ATTEMPTS; i++) {
         name_temporary(output, i);
         if (linkat(AT_FDCWD, link, AT_FDCWD, output->temporary, AT_SYMLINK_FOLLOW) == 0) return 0;
@@ -287,6 +304,7 @@ void lq_output_abandon(lq_output *output) {
     if (!output) return;
     if (output->file >= 0) close(output->file);
     if (output->temporary && *output->temporary) unlink(output->temporary);
+    if (output->lock >= 0) close(output->lock);
     free(output->temporary);
     free(output->target);
     free(output->path);
