@@ -70,5 +70,16 @@ cat >metal.json <<'END'
 {"layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}}, {"conductor": {"n": 0.2, "kappa": 3.9, "alpha": 0.3}}]}
 END
 each 23 - stack metal.json --mu 0.5 --format json --tolerance 1e-2
+cat >scene.json <<'END'
+{"name": "scene", "formats": ["npy"], "points": 100, "budget": {"p99": 0.2, "max": 0.9},
+ "materials": [{"name": "gold", "layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}},
+   {"conductor": {"n": 0.2, "kappa": 3.9, "alpha": {"min": 0.2, "max": 0.4}}}]}]}
+END
+each 7 - stack metal.json --model b18-forward --mu 0.5 --format json
+each 97 s.exr precompute stack --stack metal.json --axis mu=0.5:1:2 --tolerance 1e-1 -o s.exr --threads 1
+each 11 - validate small.exr --certificate --points 200 --json --threads 1
+each 5 v.html view small.exr -o v.html
+# (Not v.png: fontconfig 2.14, which cairo asks for letters, crashes without memory.)
+each 997 sc pack scene.json -o sc --threads 1 --cache cache
 
 [ "$failures" -eq 0 ]
