@@ -18,7 +18,7 @@ else()
   # Under a sanitizer a fault is a failure; elsewhere the corpora alone.
   set(fuzz_changes 100)
   if(CMAKE_C_FLAGS MATCHES "fsanitize=address")
-    set(fuzz_changes 6000)
+    set(fuzz_changes 4000)
   endif()
   add_test(NAME test_fuzz COMMAND lacquer-fuzz ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus ${fuzz_changes})
   lacquer_test_properties(test_fuzz)

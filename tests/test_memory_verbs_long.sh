@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-if nm "$LACQUER" 2>/dev/null | grep -qE '__(asan|tsan)_init' ||
+if nm "$LACQUER" 2>/dev/null | grep -E '__(asan|tsan)_init' >/dev/null ||
     ! "${CC:-cc}" -O1 -shared -fPIC "$LACQUER_SOURCE/tests/preload/failing_malloc.c" -o failing.so -ldl; then
     exit 77 # sanitizers have an allocator of their own
 fi
