@@ -12,7 +12,7 @@ cd "$work"
 export XDG_CACHE_HOME=$work/xdg OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 step=${LACQUER_FAULT_STEP:-61}
 rounds=$([ "$step" -gt 1 ] && echo 1 || echo "1 2 3 4")
-if nm "$LACQUER" 2>/dev/null | grep -E '__(asan|tsan)_init' >/dev/null ||
+if nm "$LACQUER" 2>/dev/null | grep -E '__(asan|tsan|gcov)_init' >/dev/null ||
     ! "${CC:-cc}" -O1 -shared -fPIC "$LACQUER_SOURCE/tests/preload/failing_calls.c" -o failing.so -ldl; then
     exit 77 # sanitizers are to be loaded first
 fi
