@@ -21,20 +21,26 @@ typedef struct lq_ray {
     double weight;
 } lq_ray;
 
-/* Downwards to the next hit. There always is one. */
+/* Downwards to the next hit, `area` of the facets that face it. There always is one. */
+static inline void lq_ray_descend_in(lq_ray *ray, double area, lq_stream *stream) {
+    ray->t += log(lq_stream_uniform(stream)) * ray->z / area;
+}
+
 static inline void lq_ray_descend(lq_ray *ray, const lq_ndf *ndf, double alpha, lq_stream *stream) {
-    const double mu = -ray->z;
-    ray->t -= log(lq_stream_uniform(stream)) * mu / lq_area_above(ndf, alpha, mu, ray->s);
+    lq_ray_descend_in(ray, lq_area_above(ndf, alpha, -ray->z, ray->s), stream);
 }
 
 /* Upwards: true when it leaves at the top, otherwise it is at its next hit. */
-static inline bool lq_ray_rise(lq_ray *ray, const lq_ndf *ndf, double alpha, lq_stream *stream) {
-    const double area = ndf->area_below(ndf, alpha, ray->z, ray->s);
+static inline bool lq_ray_rise_in(lq_ray *ray, double area, lq_stream *stream) {
     const double flight = -log(lq_stream_uniform(stream));
     /* At the very top, t = 0, even a grazing ray leaves. */
     if (flight * ray->z >= ray->t * area) return true;
     ray->t = fmax(ray->t - flight * ray->z / area, 0.0);
     return false;
+}
+
+static inline bool lq_ray_rise(lq_ray *ray, const lq_ndf *ndf, double alpha, lq_stream *stream) {
+    return lq_ray_rise_in(ray, ndf->area_below(ndf, alpha, ray->z, ray->s), stream);
 }
 
 /* The cosine of incidence of one sample. */
