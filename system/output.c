@@ -311,6 +311,14 @@ void lq_output_abandon(lq_output *output) {
     free(output);
 }
 
+lq_status lq_output_folder(const char *path, lq_error *error) {
+    struct stat there;
+    if (mkdir(path, 0777) == 0) return LQ_OK;
+    if (errno == EEXIST && stat(path, &there) == 0 && !S_ISDIR(there.st_mode)) errno = ENOTDIR;
+    if (errno == EEXIST) return LQ_OK;
+    return lq_fail(error, LQ_IO, "cannot make the folder '%.300s': %s", path, strerror(errno));
+}
+
 lq_status lq_output_save(const char *path, const void *bytes, size_t size, lq_error *error) {
     lq_output *file;
     lq_status status = lq_output_open(&file, path, error);

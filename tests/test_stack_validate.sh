@@ -37,7 +37,22 @@ echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": 0.2}, "medium": {"tau": [0.
 run 0 validate stack stack --mu 0.5 --samples 20000
 says '^0\.5 +2 reflected +energy '
 
+# slices: energies by order, and files that this program reads
+run 0 validate stack stack --mu 0.5 --samples 50000 --slices slices
+says '^0\.5 +1 reflected +twice '
+[ "$(ls slices | tr '\n' ' ')" = 'mu-0.5-reflected-classic.exr mu-0.5-reflected-classic.png mu-0.5-reflected-half.exr mu-0.5-reflected-half.png ' ] ||
+    fail "other files: $(ls slices)"
+run 0 info slices/mu-0.5-reflected-half.exr
+says 'value\.r.*noise\.b'
+says 'theta.*90'
+cp -r slices again
+run 0 validate stack stack --mu 0.5 --samples 50000 --slices slices --threads 1
+diff -r again slices >diffs || fail "one thread changes the slices: $(cat diffs)"
+
 # ------------------------------------------------------------------------------------- mistakes
+touch file
+refused "folder 'file'" validate stack stack --slices file
+refused '--slices has no effect' validate x.exr --slices slices
 refused 'no stack; usage' validate stack
 refused "one FILE at a time: 'b' after 'a'" validate stack a b
 refused 'missing.json' validate stack missing.json

@@ -7,10 +7,7 @@
 #include "validate/report_maps.h"
 #include "validate/report_ranks.h"
 
-#include <errno.h>
 #include <math.h>
-#include <string.h>
-#include <sys/stat.h>
 
 static const char style[] =
     "body{font:15px/1.5 system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif;margin:2em "
@@ -176,8 +173,8 @@ static lq_status put_page(FILE *out, const lq_certified *list, size_t count, lq_
 lq_status lq_report_html(const lq_certified *list, size_t count, const char *folder, lq_error *error) {
     char path[4096];
     lq_stream stream;
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return lq_fail(error, LQ_IO, "cannot make the folder '%.300s': %s", folder, strerror(errno));
+    const lq_status made = lq_output_folder(folder, error);
+    if (made != LQ_OK) return made;
     if ((size_t)snprintf(path, sizeof path, "%s/index.html", folder) >= sizeof path)
         return lq_fail(error, LQ_BAD_INPUT, "the name of the report's folder is too long");
     const lq_status opened = lq_stream_open(&stream, path, error);

@@ -37,16 +37,20 @@ typedef struct stack_job {
  *                                       Numbers
  * ====================================================================================== */
 
-static lq_status prepare(stack_job *job, lq_error *error) {
-    const validate_request *request = job->request;
+lq_status validate_stack_open(const validate_request *request, lq_stack **stack, lq_error *error) {
     const double tolerance = request->settings.settings.tolerance;
     if (tolerance != 0.0 && (tolerance < CLI_STACK_TOLERANCE_MIN || tolerance > CLI_STACK_TOLERANCE_MAX)) {
         snprintf(error->text, sizeof error->text, "--tolerance: a stack accepts %g to %g, not %g",
                  CLI_STACK_TOLERANCE_MIN, CLI_STACK_TOLERANCE_MAX, tolerance);
         return LQ_BAD_INPUT;
     }
-    const unsigned trusted = request->trust.plugins ? LQ_STACK_TRUSTED : 0;
-    const lq_status status = lq_stack_read(&job->stack, request->stack, trusted, error);
+    return lq_stack_read(stack, request->stack, request->trust.plugins ? LQ_STACK_TRUSTED : 0, error);
+}
+
+static lq_status prepare(stack_job *job, lq_error *error) {
+    const validate_request *request = job->request;
+    const double tolerance = request->settings.settings.tolerance;
+    lq_status status = validate_stack_open(request, &job->stack, error);
     if (status != LQ_OK) return status;
     job->query = cli_light_query(&request->light);
     job->query.tolerance = tolerance;

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE };
+enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE, SLICES };
 
 static void print_notes(FILE *out) {
     fprintf(
@@ -113,6 +113,8 @@ static const cli_option options[] = {
     CLI_MASKING_OPTION(validate_request, PUBLISHED),
     CLI_TOLERANCE_OPTION(validate_request, PUBLISHED | STACKED),
     CLI_LIGHT_OPTIONS(validate_request, STACKED),
+    {SLICES, "slices", "DIR", "write where the walks leave, as EXR and PNG; compare energies by order",
+     CLI_TEXT(validate_request, slices), .modes = STACKED},
     CLI_THREADS_OPTION(validate_request, 0),
     {0},
 };
@@ -252,7 +254,8 @@ static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
-    if (job.request.stack) return validate_stack(&job.request);
+    if (job.request.stack)
+        return job.request.slices ? validate_slices(&job.request) : validate_stack(&job.request);
     if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
     if (job.request.other || job.request.layout >= 0 || job.request.axes || job.request.diagnose)
         return validate_against(&job.request);
@@ -290,6 +293,7 @@ const cli_verb cli_verb_validate = {
                 "lacquer validate theirs.npy --axes theirs.json\n"
                 "lacquer validate fgd.exr --diagnose\n"
                 "lacquer validate hard-cases\n"
-                "lacquer validate stack recipes/stacks/frosted-metal.json --samples 1000000 --mu 1,0.3",
+                "lacquer validate stack recipes/stacks/frosted-metal.json --samples 1000000 --mu 1,0.3\n"
+                "lacquer validate stack recipes/stacks/slab.json --samples 1000000 --mu 0.7 --slices slices",
     .run = run,
 };

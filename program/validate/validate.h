@@ -30,10 +30,11 @@ typedef struct validate_request {
     cli_given given; /* the options, as the command gave them */
     bool points_given;
     certify_request certify;
-    const char *axes;  /* a JSON text that says what FILE, of anybody's, is */
-    bool diagnose;     /* FILE of this program, all of it, by the same report */
-    const char *stack; /* the description of one, against walks; `file` is the word "stack" */
-    cli_light light;   /* what meets it */
+    const char *axes;   /* a JSON text that says what FILE, of anybody's, is */
+    bool diagnose;      /* FILE of this program, all of it, by the same report */
+    const char *stack;  /* the description of one, against walks; `file` is the word "stack" */
+    cli_light light;    /* what meets it */
+    const char *slices; /* folder for what walks through it leave, by direction */
 } validate_request;
 
 /* The lists, in the order they are reported. */
@@ -72,8 +73,14 @@ int validate_against(const validate_request *request);
 /* The whole of `validate hard-cases`; returns the exit code. */
 int validate_hard_cases(const validate_request *request);
 
+/* The stack of the request, whose tolerance is one that stacks accept. */
+lq_status validate_stack_open(const validate_request *request, lq_stack **stack, lq_error *error);
+
 /* The whole of `validate stack FILE.json`; returns the exit code. */
 int validate_stack(const validate_request *request);
+
+/* The whole of `validate stack FILE.json --slices DIR`; returns the exit code. */
+int validate_slices(const validate_request *request);
 
 /* Draw the points, compute everything at each and reduce the lists. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);
