@@ -3,6 +3,7 @@
 
 #include <cairo/cairo-svg.h>
 #include <math.h>
+#include <stdint.h>
 
 #include "system/output.h"
 #include "system/status.h"
@@ -77,6 +78,36 @@ lq_status lq_draw_write(const lq_figure *figure, lq_image_form form, const char 
     const lq_status opened = lq_output_open(&to.output, path, error);
     if (opened != LQ_OK) return opened;
     const lq_status status = draw_into(figure, form, &to);
+    if (status == LQ_OK) return lq_output_commit(to.output, error);
+    lq_output_abandon(to.output);
+    return status;
+}
+
+static lq_status draw_rows(const lq_rgb *pixels, size_t width, size_t height, sink *to) {
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    cairo_status_t status = cairo_surface_status(surface);
+    for (size_t y = 0; status == CAIRO_STATUS_SUCCESS && y < height; y++) {
+        uint32_t *row = (uint32_t *)(void *)(cairo_image_surface_get_data(surface) +
+                                             y * (size_t)cairo_image_surface_get_stride(surface));
+        for (size_t x = 0; x < width; x++) {
+            const lq_rgb *p = &pixels[y * width + x];
+            row[x] = (uint32_t)p->r << 16 | (uint32_t)p->g << 8 | p->b;
+        }
+    }
+    cairo_surface_mark_dirty(surface);
+    if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface, take, to);
+    cairo_surface_destroy(surface);
+    if (to->status != LQ_OK || status == CAIRO_STATUS_SUCCESS) return to->status;
+    return lq_fail(to->error, LQ_NO_MEMORY, "an image of %zu x %zu: %s", width, height,
+                   cairo_status_to_string(status));
+}
+
+lq_status lq_draw_pixels(const lq_rgb *pixels, size_t width, size_t height, const char *path,
+                         lq_error *error) {
+    sink to = {NULL, LQ_OK, error};
+    const lq_status opened = lq_output_open(&to.output, path, error);
+    if (opened != LQ_OK) return opened;
+    const lq_status status = draw_rows(pixels, width, height, &to);
     if (status == LQ_OK) return lq_output_commit(to.output, error);
     lq_output_abandon(to.output);
     return status;

@@ -2,6 +2,7 @@
 #ifndef LACQUER_PICTURE_DRAW_H
 #define LACQUER_PICTURE_DRAW_H
 
+#include "picture/colour.h"
 #include "picture/figure.h"
 
 typedef enum lq_image_form { LQ_IMAGE_PNG, LQ_IMAGE_SVG } lq_image_form;
@@ -21,5 +22,9 @@ void lq_draw_size(const lq_figure *figure, double *width, double *height);
 
 /* The file appears whole or not at all. */
 lq_status lq_draw_write(const lq_figure *figure, lq_image_form form, const char *path, lq_error *error);
+
+/* Pixels as they are, as PNG; row 0 is the top. */
+lq_status lq_draw_pixels(const lq_rgb *pixels, size_t width, size_t height, const char *path,
+                         lq_error *error);
 
 #endif

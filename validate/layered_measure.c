@@ -1,0 +1,298 @@
+/* layered_measure.c - one stack: every angle of incidence, every side, every model. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stack/spread.h"
+#include "system/number.h"
+#include "system/status.h"
+#include "validate/layered.h"
+#include "validate/layered_picture.h"
+
+static const char *const sides[LQ_GONIO_SIDES] = {"reflected", "transmitted"};
+static const char *const parts[LQ_PARTS] = {"direct", "rest"};
+static const double degree = 3.14159265358979323846 / 180.0;
+
+/* All that one angle of a stack needs; large. */
+typedef struct work {
+    const lq_layered_request *request;
+    const lq_layered_stack *stack;
+    double theta, mu;
+    int channels;
+    lq_gonio gonio;
+    lq_stack_light exact[LQ_STACK_CHANNELS * LQ_PARTS];
+    double solid[LQ_SLICE_LAYOUTS][LQ_SLICE_CELLS];
+    lq_slice_pair measured[LQ_SLICE_LAYOUTS], model;
+    lq_error *error;
+} work;
+
+/* ======================================================================================
+ *                                       As JSON
+ * ====================================================================================== */
+
+static json_t *lobe_json(const lq_stack_lobe *lobe) {
+    return json_pack("{s:o, s:o, s:o, s:o}", "energy", lq_json_number(lobe->energy), "sin2",
+                     lq_json_number(lobe->sin2), "mean", lq_json_number(lobe->mean), "across",
+                     lq_json_number(lobe->across));
+}
+
+static json_t *lobes_json(const work *w, const lq_part_lobes *lobes) {
+    json_t *root = json_object();
+    for (int part = 0; part < LQ_PARTS; part++) {
+        json_t *list = json_array();
+        for (int c = 0; c < w->channels; c++) lq_json_append(&list, lobe_json(&(*lobes)[part][c]));
+        lq_json_set(&root, parts[part], list);
+    }
+    return root;
+}
+
+static json_t *exact_json(const work *w, int side) {
+    lq_part_lobes lobes;
+    for (int part = 0; part < LQ_PARTS; part++)
+        for (int c = 0; c < w->channels; c++) {
+            const lq_stack_light *light = &w->exact[c * LQ_PARTS + part];
+            lobes[part][c] = side ? light->transmitted : light->reflected;
+        }
+    return lobes_json(w, &lobes);
+}
+
+/* Energies of the slices, all of one side, which the exact ones explain. */
+static json_t *walked_json(const work *w, int side) {
+    json_t *list = json_array();
+    for (int part = 0; part < LQ_PARTS; part++)
+        for (int c = 0; c < w->channels; c++) {
+            const lq_gonio_part orders = {side, part, part ? LQ_GONIO_ORDERS - 1 : 0, c};
+            double noise;
+            const double energy = lq_gonio_energy(&w->gonio, LQ_SLICE_CLASSIC, &orders, &noise);
+            const lq_stack_light *light = &w->exact[c * LQ_PARTS + part];
+            const double want = side ? light->transmitted.energy : light->reflected.energy;
+            const double beyond = fmax(fabs(energy - want) - light->error, 0.0);
+            lq_json_append(&list, lq_json_number(beyond / hypot(noise, 3.0 / (double)w->gonio.samples)));
+        }
+    return list;
+}
+
+static json_t *error_json(const work *w, lq_slice_layout layout) {
+    const lq_slice_error all = lq_slice_compare(&w->model, &w->measured[layout], w->channels, true);
+    const lq_slice_error rest = lq_slice_compare(&w->model, &w->measured[layout], w->channels, false);
+    return json_pack("{s:o, s:o, s:o, s:o}", "all", lq_json_number(all.rmse), "rest",
+                     lq_json_number(rest.rmse), "all_noise", lq_json_number(all.noise), "rest_noise",
+                     lq_json_number(rest.noise));
+}
+
+/* ======================================================================================
+ *                                      One model
+ * ====================================================================================== */
+
+void lq_layered_picture(char *path, size_t size, const char *set, const char *stack, double theta, int side,
+                        const char *label) {
+    lq_print(path, size, "slices/%s-%s-%g-%s-%s.png", set, stack, theta, sides[side],
+             label ? label : "measured");
+}
+
+static lq_status draw(const work *w, const lq_slice_pair *pair, int side, const char *label) {
+    char name[512], path[5000];
+    const lq_slice_pair *measured = &w->measured[LQ_SLICE_CLASSIC];
+    lq_layered_picture(name, sizeof name, w->request->set->name, w->stack->stack->name, w->theta, side,
+                       label);
+    snprintf(path, sizeof path, "%.4000s/%s", w->request->folder, name);
+    return lq_slice_picture(pair, label ? measured : NULL, w->channels, lq_slice_peak(measured, w->channels),
+                            path, w->error);
+}
+
+/* In both layouts, of which the first gives the lobes and the picture. */
+static lq_status put_in_cells(work *w, const lq_model_shape *shape, int side, const char *label,
+                              json_t **into) {
+    lq_part_lobes lobes;
+    lq_status status = LQ_OK;
+    for (int layout = 0; layout < LQ_SLICE_LAYOUTS && status == LQ_OK; layout++) {
+        status = lq_slice_of_model(shape, w->mu, side, (lq_slice_layout)layout, w->solid[layout],
+                                   w->request->threads, &w->model, layout ? NULL : &lobes, w->error);
+        if (status == LQ_OK && layout == LQ_SLICE_CLASSIC) status = draw(w, &w->model, side, label);
+        if (status == LQ_OK)
+            lq_json_set(into, lq_slice_layout_names[layout], error_json(w, (lq_slice_layout)layout));
+    }
+    if (status == LQ_OK) lq_json_set(into, "lobes", lobes_json(w, &lobes));
+    return status;
+}
+
+/* A model need not take every stack: what it says then stands in its place. */
+static lq_status open_shape(const work *w, const lq_layered_model *model, lq_model_shape *shape,
+                            json_t **into) {
+    lq_error why = {""};
+    const lq_status status = lq_model_shape_make(shape, w->stack->stack, &model->query, w->mu, &why);
+    if (status == LQ_OK) return LQ_OK;
+    if (status != LQ_BAD_INPUT) return lq_fail(w->error, status, "%s: %s", model->label, why.text);
+    lq_json_set(into, "refused", lq_json_text(why.text));
+    return status;
+}
+
+static lq_status measure_model(work *w, const lq_layered_model *model, int side, json_t **list) {
+    lq_model_shape shape = {.lobes = NULL};
+    json_t *figures = json_pack("{s:s}", "model", model->label);
+    lq_status status = open_shape(w, model, &shape, &figures);
+    if (status == LQ_OK) status = put_in_cells(w, &shape, side, model->label, &figures);
+    else if (status == LQ_BAD_INPUT) status = LQ_OK;
+    lq_model_shape_free(&shape);
+    lq_json_append(list, figures);
+    return status;
+}
+
+/* ======================================================================================
+ *                                      One angle
+ * ====================================================================================== */
+
+static lq_status solve(work *w, size_t paths) {
+    const lq_stack_query query = {
+        .mu = &w->mu, .mu_count = 1, .paths = paths, .threads = w->request->threads};
+    const lq_status status = lq_stack_solve(w->stack->stack, &query, w->exact, NULL, w->error);
+    return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* its estimate says so */
+}
+
+static lq_status measure_side(work *w, int side, json_t **list) {
+    const lq_layered_request *r = w->request;
+    json_t *models = json_array();
+    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++)
+        lq_slice_fold(&w->gonio, side, (lq_slice_layout)layout, w->solid[layout], &w->measured[layout]);
+    lq_status status = draw(w, &w->measured[LQ_SLICE_CLASSIC], side, NULL);
+    for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
+        status = measure_model(w, &r->models[i], side, &models);
+    lq_json_append(list, json_pack("{s:s, s:o, s:o, s:o}", "side", sides[side], "exact", exact_json(w, side),
+                                   "walk_z", walked_json(w, side), "models", models));
+    return status;
+}
+
+static lq_status measure_angle(work *w, json_t **list) {
+    const lq_layered_request *r = w->request;
+    const lq_stack_query query = {.mu = &w->mu, .mu_count = 1, .threads = r->threads};
+    json_t *list_of_sides = json_array();
+    lq_status status = solve(w, LQ_PARTS);
+    if (status == LQ_OK)
+        status = lq_gonio_measure(&w->gonio, w->stack->stack, &query, r->samples, r->seed, NULL, w->error);
+    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++)
+        lq_slice_solids((lq_slice_layout)layout, w->mu, w->solid[layout]);
+    for (int side = 0; status == LQ_OK && side < w->gonio.sides; side++)
+        status = measure_side(w, side, &list_of_sides);
+    lq_gonio_free(&w->gonio);
+    lq_json_append(list, json_pack("{s:f, s:o}", "theta", w->theta, "sides", list_of_sides));
+    return status;
+}
+
+/* ======================================================================================
+ *                                  A point of a curve
+ * ====================================================================================== */
+
+/* Of light that was inside, of the first colour: its energy, and the roughness of a lobe that spreads so. */
+static json_t *point_json(const lq_spread *spread, const lq_stack_lobe *lobe) {
+    return json_pack("{s:o, s:o}", "energy", lq_json_number(lobe->energy), "alpha",
+                     lq_json_number(lq_spread_alpha(spread, 0, lobe->across)));
+}
+
+static lq_status model_point(work *w, const lq_layered_model *model, const lq_spread *spread, json_t **list) {
+    lq_model_shape shape = {.lobes = NULL};
+    lq_part_lobes lobes;
+    json_t *figures = json_pack("{s:s}", "model", model->label);
+    lq_status status = open_shape(w, model, &shape, &figures);
+    if (status == LQ_OK) {
+        status = lq_slice_of_model(&shape, w->mu, 0, LQ_SLICE_CLASSIC, w->solid[0], w->request->threads,
+                                   &w->model, &lobes, w->error);
+        lq_json_set(&figures, "point", point_json(spread, &lobes[LQ_PART_REST][0]));
+    } else if (status == LQ_BAD_INPUT) status = LQ_OK;
+    lq_model_shape_free(&shape);
+    lq_json_append(list, figures);
+    return status;
+}
+
+static lq_status measure_point(work *w, json_t **list) {
+    const lq_layered_request *r = w->request;
+    lq_spread spread;
+    json_t *models = json_array(), *exact = NULL;
+    lq_status status = lq_spread_make(&spread, &w->mu, 1, w->error);
+    if (status == LQ_OK) status = solve(w, LQ_PARTS);
+    lq_slice_solids(LQ_SLICE_CLASSIC, w->mu, w->solid[0]);
+    if (status == LQ_OK) exact = point_json(&spread, &w->exact[LQ_PART_REST].reflected);
+    for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
+        status = model_point(w, &r->models[i], &spread, &models);
+    lq_spread_free(&spread);
+    lq_json_append(list, json_pack("{s:f, s:o, s:o}", "theta", w->theta, "exact", exact ? exact : json_null(),
+                                   "models", models));
+    return status;
+}
+
+/* ======================================================================================
+ *                                      One stack
+ * ====================================================================================== */
+
+json_t *lq_layered_settings(const lq_layered_request *r, const lq_layered_stack *stack) {
+    char *text = NULL;
+    if (lq_stack_text(stack->stack, &text, NULL) != LQ_OK) return NULL;
+    json_t *thetas = json_array(), *models = json_array();
+    for (size_t i = 0; i < r->set->theta_count; i++)
+        lq_json_append(&thetas, lq_json_number(r->set->theta[i]));
+    for (size_t i = 0; i < r->model_count; i++) lq_json_append(&models, lq_json_text(r->models[i].label));
+    json_t *settings = json_pack(
+        "{s:s, s:s, s:s, s:s, s:f, s:o, s:o, s:I, s:I, s:o}", "version", LQ_VERSION, "set", r->set->name,
+        "category", stack->category, "base", stack->base, "first", stack->first, "stack", lq_json_text(text),
+        "theta", thetas, "samples", (json_int_t)r->samples, "seed", (json_int_t)r->seed, "models", models);
+    free(text);
+    return settings;
+}
+
+bool lq_layered_fits(json_t *figures, const json_t *settings) {
+    return settings && json_equal(json_object_get(figures, "settings"), settings);
+}
+
+lq_status lq_layered_measure(const lq_layered_request *r, const lq_layered_stack *stack, json_t **figures,
+                             const lq_progress *progress, lq_error *error) {
+    const bool curve = strcmp(stack->category, "curves") == 0;
+    json_t *angles = json_array();
+    work *w = calloc(1, sizeof *w);
+    lq_status status = w ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for slices");
+    for (size_t i = 0; i < r->set->theta_count && status == LQ_OK; i++) {
+        *w = (work){.request = r,
+                    .stack = stack,
+                    .theta = r->set->theta[i],
+                    .mu = cos(r->set->theta[i] * degree),
+                    .channels = lq_stack_channels(stack->stack),
+                    .error = error};
+        status = curve ? measure_point(w, &angles) : measure_angle(w, &angles);
+        if (status == LQ_OK && progress &&
+            !progress->report(progress->user, (double)(i + 1) / (double)r->set->theta_count))
+            status = lq_fail(error, LQ_CANCELLED, "stopped");
+    }
+    free(w);
+    *figures = json_pack("{s:s, s:o, s:o}", "name", stack->stack->name, "settings",
+                         lq_layered_settings(r, stack), "angles", angles);
+    if (status == LQ_OK && !*figures) return lq_fail(error, LQ_NO_MEMORY, "out of memory");
+    return status;
+}
+
+/* ======================================================================================
+ *                                       Models
+ * ====================================================================================== */
+
+static bool take_change(lq_shape_query *query, const char *word) {
+    if (strcmp(word, "released") == 0) query->variant = LQ_MODEL_RELEASED;
+    else if (strcmp(word, "fit") == 0) query->f = LQ_MODEL_F_B18;
+    else if (strcmp(word, "masked") == 0) query->masked = true;
+    else return false;
+    return true;
+}
+
+lq_status lq_layered_model_parse(lq_layered_model *model, const char *label, lq_error *error) {
+    char text[64], *rest;
+    *model = (lq_layered_model){.query = {.variant = LQ_MODEL_PAPER, .f = LQ_MODEL_F_EXACT}};
+    if (strlen(label) >= sizeof text) return lq_fail(error, LQ_BAD_INPUT, "no model '%.40s...'", label);
+    memcpy(model->label, label, strlen(label) + 1);
+    memcpy(text, label, strlen(label) + 1);
+    const char *word = strtok_r(text, "+", &rest);
+    lq_status status = lq_model_find(word ? word : "", &model->query.model, error);
+    const bool varied = status == LQ_OK && lq_model_kinds[model->query.model].varied;
+    while (status == LQ_OK && (word = strtok_r(NULL, "+", &rest)))
+        if (!varied || !take_change(&model->query, word))
+            status = lq_fail(error, LQ_BAD_INPUT,
+                             "model '%s': '+%s' is accepted of the B18 models as +released, +fit or +masked",
+                             label, word);
+    return status;
+}
