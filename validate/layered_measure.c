@@ -24,6 +24,8 @@ typedef struct work {
     lq_stack_light exact[LQ_STACK_CHANNELS * LQ_PARTS];
     double solid[LQ_SLICE_LAYOUTS][LQ_SLICE_CELLS];
     lq_slice_pair measured[LQ_SLICE_LAYOUTS], model;
+    lq_model_shape shapes[LQ_LAYERED_MODELS]; /* one a model, turned from angle to angle */
+    double aimed[LQ_LAYERED_MODELS];          /* at this cosine; 0: not made */
     lq_error *error;
 } work;
 
@@ -117,24 +119,34 @@ static lq_status put_in_cells(work *w, const lq_model_shape *shape, int side, co
     return status;
 }
 
-/* A model need not take every stack: what it says then stands in its place. */
-static lq_status open_shape(const work *w, const lq_layered_model *model, lq_model_shape *shape,
-                            json_t **into) {
+static lq_status aim(work *w, size_t i, lq_error *error) {
+    lq_shape_query query = w->request->models[i].query;
+    query.threads = w->request->threads;
+    if (w->aimed[i] == w->mu) return LQ_OK;
+    if (w->aimed[i] > 0.0) return lq_model_shape_aim(&w->shapes[i], w->mu, error);
+    return lq_model_shape_make(&w->shapes[i], w->stack->stack, &query, w->mu, error);
+}
+
+/* A model need not take every stack: what it says then stands in its place. LQ_BAD_INPUT: it did. */
+static lq_status open_shape(work *w, size_t i, json_t **into) {
     lq_error why = {""};
-    const lq_status status = lq_model_shape_make(shape, w->stack->stack, &model->query, w->mu, &why);
+    const lq_status status = aim(w, i, &why);
+    w->aimed[i] = status == LQ_OK ? w->mu : 0.0;
     if (status == LQ_OK) return LQ_OK;
-    if (status != LQ_BAD_INPUT) return lq_fail(w->error, status, "%s: %s", model->label, why.text);
+    lq_model_shape_free(&w->shapes[i]);
+    w->shapes[i] = (lq_model_shape){.lobes = NULL};
+    if (status != LQ_BAD_INPUT)
+        return lq_fail(w->error, status, "%s: %.400s", w->request->models[i].label, why.text);
     lq_json_set(into, "refused", lq_json_text(why.text));
     return status;
 }
 
-static lq_status measure_model(work *w, const lq_layered_model *model, int side, json_t **list) {
-    lq_model_shape shape = {.lobes = NULL};
-    json_t *figures = json_pack("{s:s}", "model", model->label);
-    lq_status status = open_shape(w, model, &shape, &figures);
-    if (status == LQ_OK) status = put_in_cells(w, &shape, side, model->label, &figures);
+static lq_status measure_model(work *w, size_t i, int side, json_t **list) {
+    const char *label = w->request->models[i].label;
+    json_t *figures = json_pack("{s:s}", "model", label);
+    lq_status status = open_shape(w, i, &figures);
+    if (status == LQ_OK) status = put_in_cells(w, &w->shapes[i], side, label, &figures);
     else if (status == LQ_BAD_INPUT) status = LQ_OK;
-    lq_model_shape_free(&shape);
     lq_json_append(list, figures);
     return status;
 }
@@ -157,7 +169,7 @@ static lq_status measure_side(work *w, int side, json_t **list) {
         lq_slice_fold(&w->gonio, side, (lq_slice_layout)layout, w->solid[layout], &w->measured[layout]);
     lq_status status = draw(w, &w->measured[LQ_SLICE_CLASSIC], side, NULL);
     for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
-        status = measure_model(w, &r->models[i], side, &models);
+        status = measure_model(w, i, side, &models);
     lq_json_append(list, json_pack("{s:s, s:o, s:o, s:o}", "side", sides[side], "exact", exact_json(w, side),
                                    "walk_z", walked_json(w, side), "models", models));
     return status;
@@ -189,17 +201,15 @@ static json_t *point_json(const lq_spread *spread, const lq_stack_lobe *lobe) {
                      lq_json_number(lq_spread_alpha(spread, 0, lobe->across)));
 }
 
-static lq_status model_point(work *w, const lq_layered_model *model, const lq_spread *spread, json_t **list) {
-    lq_model_shape shape = {.lobes = NULL};
+static lq_status model_point(work *w, size_t i, const lq_spread *spread, json_t **list) {
     lq_part_lobes lobes;
-    json_t *figures = json_pack("{s:s}", "model", model->label);
-    lq_status status = open_shape(w, model, &shape, &figures);
+    json_t *figures = json_pack("{s:s}", "model", w->request->models[i].label);
+    lq_status status = open_shape(w, i, &figures);
     if (status == LQ_OK) {
-        status = lq_slice_of_model(&shape, w->mu, 0, LQ_SLICE_CLASSIC, w->solid[0], w->request->threads,
-                                   &w->model, &lobes, w->error);
-        lq_json_set(&figures, "point", point_json(spread, &lobes[LQ_PART_REST][0]));
+        status = lq_slice_of_model(&w->shapes[i], w->mu, 0, LQ_SLICE_CLASSIC, w->solid[0],
+                                   w->request->threads, &w->model, &lobes, w->error);
+        if (status == LQ_OK) lq_json_set(&figures, "point", point_json(spread, &lobes[LQ_PART_REST][0]));
     } else if (status == LQ_BAD_INPUT) status = LQ_OK;
-    lq_model_shape_free(&shape);
     lq_json_append(list, figures);
     return status;
 }
@@ -213,7 +223,7 @@ static lq_status measure_point(work *w, json_t **list) {
     lq_slice_solids(LQ_SLICE_CLASSIC, w->mu, w->solid[0]);
     if (status == LQ_OK) exact = point_json(&spread, &w->exact[LQ_PART_REST].reflected);
     for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
-        status = model_point(w, &r->models[i], &spread, &models);
+        status = model_point(w, i, &spread, &models);
     lq_spread_free(&spread);
     lq_json_append(list, json_pack("{s:f, s:o, s:o}", "theta", w->theta, "exact", exact ? exact : json_null(),
                                    "models", models));
@@ -250,17 +260,18 @@ lq_status lq_layered_measure(const lq_layered_request *r, const lq_layered_stack
     work *w = calloc(1, sizeof *w);
     lq_status status = w ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for slices");
     for (size_t i = 0; i < r->set->theta_count && status == LQ_OK; i++) {
-        *w = (work){.request = r,
-                    .stack = stack,
-                    .theta = r->set->theta[i],
-                    .mu = cos(r->set->theta[i] * degree),
-                    .channels = lq_stack_channels(stack->stack),
-                    .error = error};
+        w->request = r;
+        w->stack = stack;
+        w->theta = r->set->theta[i];
+        w->mu = cos(w->theta * degree);
+        w->channels = lq_stack_channels(stack->stack);
+        w->error = error;
         status = curve ? measure_point(w, &angles) : measure_angle(w, &angles);
         if (status == LQ_OK && progress &&
             !progress->report(progress->user, (double)(i + 1) / (double)r->set->theta_count))
             status = lq_fail(error, LQ_CANCELLED, "stopped");
     }
+    for (size_t i = 0; w && i < r->model_count; i++) lq_model_shape_free(&w->shapes[i]);
     free(w);
     *figures = json_pack("{s:s, s:o, s:o}", "name", stack->stack->name, "settings",
                          lq_layered_settings(r, stack), "angles", angles);

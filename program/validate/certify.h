@@ -49,8 +49,9 @@ enum {
          CLI_TEXT(validate_request, certify.junit),                                                          \
          .modes = CERTIFIED},                                                                                \
     {                                                                                                        \
-        CERTIFY_REPORT, "report", "DIR", "write the certificate as a web page, DIR/index.html",              \
-            CLI_TEXT(validate_request, certify.report), .modes = CERTIFIED                                   \
+        CERTIFY_REPORT, "report", "DIR",                                                                     \
+            "write a web page, DIR/index.html: of a certificate, of layered models",                         \
+            CLI_TEXT(validate_request, certify.report), .modes = CERTIFIED | LAYERED                         \
     }
 
 typedef struct certify_request {

@@ -12,7 +12,22 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { AGAINST = 256, SAMPLES, POINTS, SEED, BUDGET, FORMAT, JSON, LAYOUT, KIND, AXES, DIAGNOSE, SLICES };
+enum {
+    AGAINST = 256,
+    SAMPLES,
+    POINTS,
+    SEED,
+    BUDGET,
+    FORMAT,
+    JSON,
+    LAYOUT,
+    KIND,
+    AXES,
+    DIAGNOSE,
+    SLICES,
+    SET,
+    MODEL
+};
 
 static void print_notes(FILE *out) {
     fprintf(
@@ -42,7 +57,12 @@ static void print_notes(FILE *out) {
         "stack FILE.json compares what `lacquer stack` says with random walks of single rays, --samples N a\n"
         "cosine and channel: energies, sin2, mean and across of the light on both sides. z is what a\n"
         "difference exceeds the solver's error estimate by, in standard errors of the walk. Exit code 2: z\n"
-        "is larger than chance explains, or the solver did not reach --tolerance (default 1e-4).\n");
+        "is larger than chance explains, or the solver did not reach --tolerance (default 1e-4).\n"
+        "With --slices DIR the walks are counted by direction instead, 90 x 360 cells of it or of the half\n"
+        "vector, and energies are compared by how often light met the first interface.\n\n"
+        "layered measures models of layered materials on a set of stacks: RMSE of their lobes against\n"
+        "slices of --samples walks, energies and moments against the exact solver. Finished stacks are kept\n"
+        "in the report's folder and taken up where all settings are the same. docs/layered.md.\n");
 }
 
 /* Modes. */
@@ -55,7 +75,8 @@ enum {
     DIAGNOSED = 32,   /* --diagnose */
     CERTIFIED = 64,   /* a certificate */
     HARD_CASES = 128, /* no file at all */
-    STACKED = 256     /* a stack's description, against walks */
+    STACKED = 256,    /* a stack's description, against walks */
+    LAYERED = 512     /* models of layered materials, on a set of stacks */
 };
 
 static bool read_against(void *field, const char *text) {
@@ -94,38 +115,48 @@ static const cli_option options[] = {
      CLI_TEXT(validate_request, axes), .modes = DESCRIBED},
     {DIAGNOSE, "diagnose", NULL, "compare every entry with the solver and say what is wrong",
      CLI_FLAG(validate_request, diagnose), .modes = DIAGNOSED},
-    {SAMPLES, "samples", "N", "random walks per point (default 100000)",
-     CLI_COUNT(validate_request, samples, 2, (double)LQ_WALK_MAX_SAMPLES), .modes = WALKED | STACKED},
+    {SAMPLES, "samples", "N", "random walks per point (default 100000), or slice of layered (10^6)",
+     CLI_COUNT(validate_request, samples, 2, (double)LQ_WALK_MAX_SAMPLES),
+     .modes = WALKED | STACKED | LAYERED},
     {POINTS, "points", "P", "points, half of them stored entries (default 256)",
-     CLI_COUNT(validate_request, points, 2, 10000000), .modes = ~(unsigned)(HARD_CASES | STACKED)},
+     CLI_COUNT(validate_request, points, 2, 10000000), .modes = ~(unsigned)(HARD_CASES | STACKED | LAYERED)},
     {SEED, "seed", "S", "of the points and of the walks (default 1)",
      CLI_COUNT(validate_request, seed, 0, (double)SIZE_MAX), .modes = ~(unsigned)HARD_CASES},
     {BUDGET, "budget", "E|max=E,p99=E|FILE",
      "largest error that stored and interpolated values may have; by norm, or a budget file: certify",
-     .type = CLI_TYPE_READ, .read = read_budget, .modes = ~(unsigned)(HARD_CASES | STACKED)},
+     .type = CLI_TYPE_READ, .read = read_budget, .modes = ~(unsigned)(HARD_CASES | STACKED | LAYERED)},
     CERTIFY_OPTIONS,
     {FORMAT, "format", "text|json", "of the report (default text)",
-     CLI_CHOICE(validate_request, format, formats)},
-    {JSON, "json", NULL, "the same as --format json", CLI_FLAG(validate_request, json)},
-    CLI_NDF_OPTION(validate_request, ~(unsigned)STACKED),
-    CLI_ALLOW_PLUGIN_OPTION(validate_request, ~(unsigned)(PUBLISHED | HARD_CASES)),
+     CLI_CHOICE(validate_request, format, formats), .modes = ~(unsigned)LAYERED},
+    {JSON, "json", NULL, "the same as --format json", CLI_FLAG(validate_request, json),
+     .modes = ~(unsigned)LAYERED},
+    CLI_NDF_OPTION(validate_request, ~(unsigned)(STACKED | LAYERED)),
+    CLI_ALLOW_PLUGIN_OPTION(validate_request, ~(unsigned)(PUBLISHED | HARD_CASES | LAYERED)),
     CLI_SCATTERING_OPTION(validate_request, PUBLISHED),
     CLI_MASKING_OPTION(validate_request, PUBLISHED),
     CLI_TOLERANCE_OPTION(validate_request, PUBLISHED | STACKED),
     CLI_LIGHT_OPTIONS(validate_request, STACKED),
     {SLICES, "slices", "DIR", "write where the walks leave, as EXR and PNG; compare energies by order",
      CLI_TEXT(validate_request, slices), .modes = STACKED},
+    {SET, "set", "ba19|b18|d22|FILE", "the stacks that models are measured on (default ba19)",
+     CLI_TEXT(validate_request, set), .modes = LAYERED},
+    {MODEL, "model", "NAME,...", "models to measure (default: all that `lacquer stack --model` takes)",
+     CLI_TEXT(validate_request, models), .modes = LAYERED},
     CLI_THREADS_OPTION(validate_request, 0),
     {0},
 };
 
-/* The words that stand in place of FILE; files of such names are ./hard-cases and ./stack. */
+/* The words that stand in place of FILE; files of such names are ./hard-cases, ./stack and so on. */
 static bool is_hard_cases(const validate_request *request) {
     return strcmp(request->file, "hard-cases") == 0;
 }
 
 static bool is_stack(const validate_request *request) {
     return strcmp(request->file, "stack") == 0;
+}
+
+static bool is_layered(const validate_request *request) {
+    return strcmp(request->file, "layered") == 0;
 }
 
 static bool take_word(void *user, const char *word) {
@@ -147,6 +178,7 @@ static unsigned mode_of(const validate_request *request, const char **where) {
     } modes[] = {
         {is_hard_cases(request), HARD_CASES, "for hard-cases: every case has its own limit"},
         {is_stack(request), STACKED, "for a stack, whose description says what it is"},
+        {is_layered(request), LAYERED, "for layered, whose set says what is measured"},
         {request->axes, DESCRIBED, "with --axes, which says how FILE was made"},
         {request->diagnose, DIAGNOSED, "with --diagnose, which is for FILE alone"},
         {request->other, OTHERS, "with --against OTHER"},
@@ -163,7 +195,7 @@ static unsigned mode_of(const validate_request *request, const char **where) {
 /* What FILE records may be named where FILE says how it was made; an NDF that opens nothing is not read. */
 static bool names_nothing(const validate_request *request, unsigned mode) {
     const char *ndf;
-    return request->trust.ndf && !(mode & (PUBLISHED | HARD_CASES | STACKED)) &&
+    return request->trust.ndf && !(mode & (PUBLISHED | HARD_CASES | STACKED | LAYERED)) &&
            lq_ndf_trusted(request->trust.ndf, NULL, &ndf, NULL) == LQ_OK;
 }
 
@@ -188,6 +220,8 @@ static bool parse(validate_request *request, int argc, char **argv) {
     request->light = cli_light_default();
     request->certify.budgets.count = 1;
     if (!cli_parse(&cli_verb_validate, argc, argv, request, take_word, &request->given)) return false;
+    if (request->file && is_layered(request) && !cli_given_text(&request->given, SAMPLES))
+        request->samples = 1000000;
     request->points_given = cli_given_text(&request->given, POINTS) != NULL;
     request->json |= request->format == 1;
     if (cli_given_text(&request->given, CLI_NDF)) request->trust.ndf = request->settings.settings.ndf;
@@ -254,6 +288,7 @@ static int run(int argc, char **argv) {
     validate_job job = {.table = NULL};
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
+    if (is_layered(&job.request)) return validate_layered(&job.request);
     if (job.request.stack)
         return job.request.slices ? validate_slices(&job.request) : validate_stack(&job.request);
     if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
@@ -279,7 +314,8 @@ static int run(int argc, char **argv) {
 const cli_verb cli_verb_validate = {
     .name = "validate",
     .summary = "check a stored table against the exact solver and random walks",
-    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]\nstack FILE.json [options]",
+    .usage = "FILE|DIR [options]\nhard-cases [--ndf NDF] [--format text|json]\nstack FILE.json [options]\n"
+             "layered --report DIR [--set SET] [--model NAME,...]",
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
@@ -294,6 +330,7 @@ const cli_verb cli_verb_validate = {
                 "lacquer validate fgd.exr --diagnose\n"
                 "lacquer validate hard-cases\n"
                 "lacquer validate stack recipes/stacks/frosted-metal.json --samples 1000000 --mu 1,0.3\n"
-                "lacquer validate stack recipes/stacks/slab.json --samples 1000000 --mu 0.7 --slices slices",
+                "lacquer validate stack recipes/stacks/slab.json --samples 1000000 --mu 0.7 --slices slices\n"
+                "lacquer validate layered --report report --samples 1000000",
     .run = run,
 };

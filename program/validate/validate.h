@@ -30,11 +30,12 @@ typedef struct validate_request {
     cli_given given; /* the options, as the command gave them */
     bool points_given;
     certify_request certify;
-    const char *axes;   /* a JSON text that says what FILE, of anybody's, is */
-    bool diagnose;      /* FILE of this program, all of it, by the same report */
-    const char *stack;  /* the description of one, against walks; `file` is the word "stack" */
-    cli_light light;    /* what meets it */
-    const char *slices; /* folder for what walks through it leave, by direction */
+    const char *axes;         /* a JSON text that says what FILE, of anybody's, is */
+    bool diagnose;            /* FILE of this program, all of it, by the same report */
+    const char *stack;        /* the description of one, against walks; `file` is the word "stack" */
+    cli_light light;          /* what meets it */
+    const char *slices;       /* folder for what walks through it leave, by direction */
+    const char *set, *models; /* of `validate layered`; NULL: ba19, all models */
 } validate_request;
 
 /* The lists, in the order they are reported. */
@@ -81,6 +82,9 @@ int validate_stack(const validate_request *request);
 
 /* The whole of `validate stack FILE.json --slices DIR`; returns the exit code. */
 int validate_slices(const validate_request *request);
+
+/* The whole of `validate layered`; returns the exit code. */
+int validate_layered(const validate_request *request);
 
 /* Draw the points, compute everything at each and reduce the lists. */
 lq_status validate_measure(validate_job *job, const lq_progress *progress, lq_error *error);
