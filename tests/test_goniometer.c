@@ -35,7 +35,7 @@ static lq_gonio measure(const char *text, double mu, bool single, int threads) {
     lq_error error = {""};
     lq_gonio gonio;
     const lq_stack_query query = {.mu = &mu, .mu_count = 1, .single = single, .threads = threads};
-    if (lq_gonio_measure(&gonio, stack, &query, SAMPLES, SEED, NULL, &error) != LQ_OK)
+    if (lq_gonio_measure(&gonio, stack, &query, LQ_SLICE_LAYOUTS, SAMPLES, SEED, NULL, &error) != LQ_OK)
         fail_msg("%s", error.text);
     lq_stack_free(stack);
     return gonio;
@@ -116,11 +116,10 @@ static void test_matte(void **state) {
         lq_gonio_slice(&g, (lq_slice_layout)layout, &part, solid, value, noise);
         for (size_t cell = 0; cell < LQ_SLICE_CELLS; cell++) {
             double want = 0.0;
-            for (int sub = 0; sub < LQ_SLICE_SUB * LQ_SLICE_SUB; sub++) {
-                lq_slice_point p;
-                if (lq_slice_point_at((lq_slice_layout)layout, g.mu, cell, sub, &p))
-                    want += 0.5 / 3.14159265358979 * p.z * p.solid;
-            }
+            lq_slice_point points[LQ_SLICE_POINTS];
+            lq_slice_points((lq_slice_layout)layout, g.mu, cell, points);
+            for (int i = 0; i < LQ_SLICE_POINTS; i++)
+                want += 0.5 / 3.14159265358979 * fmax(points[i].z, 0.0) * points[i].solid;
             const double off = value[cell] * solid[cell] - want, sigma = noise[cell] * solid[cell];
             deviation += off * off;
             variance += sigma * sigma;
@@ -128,7 +127,8 @@ static void test_matte(void **state) {
         }
         assert_near(deviation / variance, 1.0, 0.05);
         /* The hemisphere; or of the sphere what half vectors of the upper hemisphere lead to. */
-        assert_near(solids / (2.0 * 3.14159265358979 * (layout == LQ_SLICE_CLASSIC ? 1.0 : 1.0 + g.mu)), 1.0, 1e-4);
+        assert_near(solids / (2.0 * 3.14159265358979 * (layout == LQ_SLICE_CLASSIC ? 1.0 : 1.0 + g.mu)), 1.0,
+                    1e-4);
     }
     lq_gonio_free(&g);
 }
@@ -151,14 +151,16 @@ static void test_mirror(void **state) {
 static void test_cells_and_points(void **state) {
     (void)state;
     for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++)
-        for (size_t cell = 3; cell < LQ_SLICE_CELLS; cell += 17)
-            for (int sub = 0; sub < LQ_SLICE_SUB * LQ_SLICE_SUB; sub++) {
-                lq_slice_point p;
-                if (lq_slice_point_at((lq_slice_layout)layout, 0.7, cell, sub, &p)) {
-                    assert_near(p.x * p.x + p.y * p.y + p.z * p.z, 1.0, 1e-12);
-                    assert_int_equal(lq_slice_cell((lq_slice_layout)layout, 0.7, p.x, p.y, p.z), cell);
-                }
+        for (size_t cell = 3; cell < LQ_SLICE_CELLS; cell += 17) {
+            lq_slice_point points[LQ_SLICE_POINTS];
+            lq_slice_points((lq_slice_layout)layout, 0.7, cell, points);
+            for (int i = 0; i < LQ_SLICE_POINTS; i++) {
+                const lq_slice_point *p = &points[i];
+                if (!(p->z > 0.0 && p->solid > 0.0)) continue;
+                assert_near(p->x * p->x + p->y * p->y + p->z * p->z, 1.0, 1e-12);
+                assert_int_equal(lq_slice_cell((lq_slice_layout)layout, 0.7, p->x, p->y, p->z), cell);
             }
+        }
 }
 
 static void test_threads(void **state) {
@@ -177,10 +179,12 @@ static void test_refusals(void **state) {
     lq_gonio g;
     lq_error error = {""};
     const lq_stack_query below = {.mu = &mu, .mu_count = 1, .from_below = true};
-    assert_int_equal(lq_gonio_measure(&g, stack, &below, SAMPLES, SEED, NULL, &error), LQ_BAD_INPUT);
+    assert_int_equal(lq_gonio_measure(&g, stack, &below, LQ_SLICE_LAYOUTS, SAMPLES, SEED, NULL, &error),
+                     LQ_BAD_INPUT);
     lq_gonio_free(&g);
     const lq_stack_query query = {.mu = &mu, .mu_count = 1};
-    assert_int_equal(lq_gonio_measure(&g, stack, &query, 1, SEED, NULL, &error), LQ_BAD_INPUT);
+    assert_int_equal(lq_gonio_measure(&g, stack, &query, LQ_SLICE_LAYOUTS, 1, SEED, NULL, &error),
+                     LQ_BAD_INPUT);
     lq_gonio_free(&g);
     lq_stack_free(stack);
 }

@@ -20,7 +20,7 @@ static size_t slice_size(const lq_gonio *g) {
 }
 
 static size_t slice_at(const lq_gonio *g, int side, lq_slice_layout layout, int order) {
-    return (((size_t)side * LQ_SLICE_LAYOUTS + layout) * LQ_GONIO_ORDERS + (size_t)order) * slice_size(g);
+    return (((size_t)side * (size_t)g->layouts + layout) * LQ_GONIO_ORDERS + (size_t)order) * slice_size(g);
 }
 
 static size_t all_sums(const lq_gonio *g) {
@@ -45,7 +45,7 @@ static uint64_t fixed(double weight) {
 
 static void add(const job *j, uint64_t *sums, int side, int order, const lq_traveller *t) {
     const lq_gonio *g = j->gonio;
-    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++) {
+    for (int layout = 0; layout < g->layouts; layout++) {
         const size_t cell = lq_slice_cell((lq_slice_layout)layout, g->mu, t->x, t->y, t->ray.z);
         uint64_t *at = sums + slice_at(g, side, (lq_slice_layout)layout, order) +
                        (cell * (size_t)g->channels + (size_t)j->channel) * SUMS;
@@ -111,13 +111,14 @@ static lq_status check(const lq_stack *stack, const lq_stack_query *query, size_
     return lq_stack_solvable(stack, query, error);
 }
 
-lq_status lq_gonio_measure(lq_gonio *g, const lq_stack *stack, const lq_stack_query *query, size_t samples,
-                           uint64_t seed, const lq_progress *progress, lq_error *error) {
+lq_status lq_gonio_measure(lq_gonio *g, const lq_stack *stack, const lq_stack_query *query, int layouts,
+                           size_t samples, uint64_t seed, const lq_progress *progress, lq_error *error) {
     const bool opaque = stack->layers[stack->layer_count - 1].type != LQ_LAYER_DIELECTRIC;
     *g = (lq_gonio){.mu = query->mu[0],
                     .samples = samples,
                     .channels = lq_stack_channels(stack),
-                    .sides = opaque ? 1 : LQ_GONIO_SIDES};
+                    .sides = opaque ? 1 : LQ_GONIO_SIDES,
+                    .layouts = layouts};
     lq_status status = check(stack, query, samples, error);
     if (status != LQ_OK) return status;
     g->sums = calloc(all_sums(g), sizeof *g->sums);

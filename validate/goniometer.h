@@ -21,14 +21,14 @@ enum { LQ_GONIO_ORDERS = 3, LQ_GONIO_SIDES = 2 }; /* met once, twice, more often
 typedef struct lq_gonio {
     double mu;
     size_t samples;
-    int channels, sides;
-    uint64_t *sums; /* weights and their squares; lq_gonio_slice reads them */
-    uint64_t lost;  /* of rays given up */
+    int channels, sides, layouts; /* layouts: the first of them */
+    uint64_t *sums;               /* weights and their squares; lq_gonio_slice reads them */
+    uint64_t lost;                /* of rays given up */
 } lq_gonio;
 
-/* At the first cosine of the query, whose tolerance and paths are not read. LQ_BAD_INPUT: what lq_stack_walk
- * refuses. Free it whatever comes back. */
-lq_status lq_gonio_measure(lq_gonio *gonio, const lq_stack *stack, const lq_stack_query *query,
+/* In the first `layouts` of lq_slice_layout, at the first cosine of the query, whose tolerance and paths are
+ * not read. LQ_BAD_INPUT: what lq_stack_walk refuses. Free it whatever comes back. */
+lq_status lq_gonio_measure(lq_gonio *gonio, const lq_stack *stack, const lq_stack_query *query, int layouts,
                            size_t samples, uint64_t seed, const lq_progress *progress, lq_error *error);
 void lq_gonio_free(lq_gonio *gonio);
 

@@ -13,8 +13,9 @@
 
 #include <stdint.h>
 
-/* "b18-forward", and with what departs from its defaults: "b18-forward+released", "+fit" (B18's own f),
- * "+masked" (lobes without their albedo). */
+/* "b18-forward", and with what departs from its defaults: "+exact-first" or "+scaled-first" (the first lobe
+ * is the top interface's BRDF, Ba19 eq. 6, or that with the model's energy); of the B18 models "+released",
+ * "+fit" (B18's own f), "+masked" (lobes without their albedo). */
 typedef struct lq_layered_model {
     char label[64];
     lq_shape_query query;

@@ -22,8 +22,8 @@ typedef struct work {
     int channels;
     lq_gonio gonio;
     lq_stack_light exact[LQ_STACK_CHANNELS * LQ_PARTS];
-    double solid[LQ_SLICE_LAYOUTS][LQ_SLICE_CELLS];
-    lq_slice_pair measured[LQ_SLICE_LAYOUTS], model;
+    double solid[LQ_SLICE_CELLS];
+    lq_slice_pair measured, model;
     lq_model_shape shapes[LQ_LAYERED_MODELS]; /* one a model, turned from angle to angle */
     double aimed[LQ_LAYERED_MODELS];          /* at this cosine; 0: not made */
     lq_error *error;
@@ -49,35 +49,52 @@ static json_t *lobes_json(const work *w, const lq_part_lobes *lobes) {
     return root;
 }
 
-static json_t *exact_json(const work *w, int side) {
-    lq_part_lobes lobes;
-    for (int part = 0; part < LQ_PARTS; part++)
-        for (int c = 0; c < w->channels; c++) {
-            const lq_stack_light *light = &w->exact[c * LQ_PARTS + part];
-            lobes[part][c] = side ? light->transmitted : light->reflected;
-        }
-    return lobes_json(w, &lobes);
+/* Whether all light of a side was inside, as model_shape.h counts it. */
+static bool inside(const work *w, int side) {
+    return side == 1 && w->stack->stack->layer_count > 1;
 }
 
-/* Energies of the slices, all of one side, which the exact ones explain. */
-static json_t *walked_json(const work *w, int side) {
+static lq_stack_lobe of_side(const lq_stack_light *light, int side) {
+    return side ? light->transmitted : light->reflected;
+}
+
+static lq_stack_lobe sum_of(lq_stack_lobe a, lq_stack_lobe b) {
+    const double energy = a.energy + b.energy;
+    if (!(energy > 0.0)) return (lq_stack_lobe){0.0, 0.0, 0.0, 0.0};
+    return (lq_stack_lobe){energy, (a.energy * a.sin2 + b.energy * b.sin2) / energy,
+                           (a.energy * a.mean + b.energy * b.mean) / energy,
+                           (a.energy * a.across + b.energy * b.across) / energy};
+}
+
+static void exact_lobes(const work *w, int side, lq_part_lobes *lobes) {
+    for (int c = 0; c < w->channels; c++) {
+        const lq_stack_light *light = &w->exact[c * LQ_PARTS];
+        (*lobes)[LQ_PART_DIRECT][c] = of_side(&light[LQ_PART_DIRECT], side);
+        (*lobes)[LQ_PART_REST][c] = of_side(&light[LQ_PART_REST], side);
+        if (!inside(w, side)) continue;
+        (*lobes)[LQ_PART_REST][c] = sum_of((*lobes)[LQ_PART_DIRECT][c], (*lobes)[LQ_PART_REST][c]);
+        (*lobes)[LQ_PART_DIRECT][c] = (lq_stack_lobe){0.0, 0.0, 0.0, 0.0};
+    }
+}
+
+/* How many standard errors the energies of the slices are from what is exact, beyond its own estimate. */
+static json_t *walked_json(const work *w, int side, const lq_part_lobes *exact) {
     json_t *list = json_array();
     for (int part = 0; part < LQ_PARTS; part++)
         for (int c = 0; c < w->channels; c++) {
-            const lq_gonio_part orders = {side, part, part ? LQ_GONIO_ORDERS - 1 : 0, c};
+            const lq_gonio_part orders = lq_slice_part(side, inside(w, side), part, c);
             double noise;
             const double energy = lq_gonio_energy(&w->gonio, LQ_SLICE_CLASSIC, &orders, &noise);
-            const lq_stack_light *light = &w->exact[c * LQ_PARTS + part];
-            const double want = side ? light->transmitted.energy : light->reflected.energy;
-            const double beyond = fmax(fabs(energy - want) - light->error, 0.0);
+            const double allowed = w->exact[c * LQ_PARTS].error + w->exact[c * LQ_PARTS + 1].error;
+            const double beyond = fmax(fabs(energy - (*exact)[part][c].energy) - allowed, 0.0);
             lq_json_append(&list, lq_json_number(beyond / hypot(noise, 3.0 / (double)w->gonio.samples)));
         }
     return list;
 }
 
-static json_t *error_json(const work *w, lq_slice_layout layout) {
-    const lq_slice_error all = lq_slice_compare(&w->model, &w->measured[layout], w->channels, true);
-    const lq_slice_error rest = lq_slice_compare(&w->model, &w->measured[layout], w->channels, false);
+static json_t *error_json(const work *w) {
+    const lq_slice_error all = lq_slice_compare(&w->model, &w->measured, w->channels, true);
+    const lq_slice_error rest = lq_slice_compare(&w->model, &w->measured, w->channels, false);
     return json_pack("{s:o, s:o, s:o, s:o}", "all", lq_json_number(all.rmse), "rest",
                      lq_json_number(rest.rmse), "all_noise", lq_json_number(all.noise), "rest_noise",
                      lq_json_number(rest.noise));
@@ -95,7 +112,7 @@ void lq_layered_picture(char *path, size_t size, const char *set, const char *st
 
 static lq_status draw(const work *w, const lq_slice_pair *pair, int side, const char *label) {
     char name[512], path[5000];
-    const lq_slice_pair *measured = &w->measured[LQ_SLICE_CLASSIC];
+    const lq_slice_pair *measured = &w->measured;
     lq_layered_picture(name, sizeof name, w->request->set->name, w->stack->stack->name, w->theta, side,
                        label);
     snprintf(path, sizeof path, "%.4000s/%s", w->request->folder, name);
@@ -103,20 +120,16 @@ static lq_status draw(const work *w, const lq_slice_pair *pair, int side, const 
                             path, w->error);
 }
 
-/* In both layouts, of which the first gives the lobes and the picture. */
 static lq_status put_in_cells(work *w, const lq_model_shape *shape, int side, const char *label,
                               json_t **into) {
     lq_part_lobes lobes;
-    lq_status status = LQ_OK;
-    for (int layout = 0; layout < LQ_SLICE_LAYOUTS && status == LQ_OK; layout++) {
-        status = lq_slice_of_model(shape, w->mu, side, (lq_slice_layout)layout, w->solid[layout],
-                                   w->request->threads, &w->model, layout ? NULL : &lobes, w->error);
-        if (status == LQ_OK && layout == LQ_SLICE_CLASSIC) status = draw(w, &w->model, side, label);
-        if (status == LQ_OK)
-            lq_json_set(into, lq_slice_layout_names[layout], error_json(w, (lq_slice_layout)layout));
-    }
-    if (status == LQ_OK) lq_json_set(into, "lobes", lobes_json(w, &lobes));
-    return status;
+    lq_status status = lq_slice_of_model(shape, w->mu, side, LQ_SLICE_CLASSIC, w->solid, w->request->threads,
+                                         &w->model, &lobes, w->error);
+    if (status == LQ_OK) status = draw(w, &w->model, side, label);
+    if (status != LQ_OK) return status;
+    lq_json_set(into, "rmse", error_json(w));
+    lq_json_set(into, "lobes", lobes_json(w, &lobes));
+    return LQ_OK;
 }
 
 static lq_status aim(work *w, size_t i, lq_error *error) {
@@ -165,13 +178,15 @@ static lq_status solve(work *w, size_t paths) {
 static lq_status measure_side(work *w, int side, json_t **list) {
     const lq_layered_request *r = w->request;
     json_t *models = json_array();
-    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++)
-        lq_slice_fold(&w->gonio, side, (lq_slice_layout)layout, w->solid[layout], &w->measured[layout]);
-    lq_status status = draw(w, &w->measured[LQ_SLICE_CLASSIC], side, NULL);
+    lq_part_lobes exact;
+    exact_lobes(w, side, &exact);
+    lq_slice_fold(&w->gonio, side, inside(w, side), LQ_SLICE_CLASSIC, w->solid, &w->measured);
+    lq_status status = draw(w, &w->measured, side, NULL);
     for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
         status = measure_model(w, i, side, &models);
-    lq_json_append(list, json_pack("{s:s, s:o, s:o, s:o}", "side", sides[side], "exact", exact_json(w, side),
-                                   "walk_z", walked_json(w, side), "models", models));
+    lq_json_append(list,
+                   json_pack("{s:s, s:o, s:o, s:o}", "side", sides[side], "exact", lobes_json(w, &exact),
+                             "walk_z", walked_json(w, side, &exact), "models", models));
     return status;
 }
 
@@ -181,9 +196,8 @@ static lq_status measure_angle(work *w, json_t **list) {
     json_t *list_of_sides = json_array();
     lq_status status = solve(w, LQ_PARTS);
     if (status == LQ_OK)
-        status = lq_gonio_measure(&w->gonio, w->stack->stack, &query, r->samples, r->seed, NULL, w->error);
-    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++)
-        lq_slice_solids((lq_slice_layout)layout, w->mu, w->solid[layout]);
+        status = lq_gonio_measure(&w->gonio, w->stack->stack, &query, 1, r->samples, r->seed, NULL, w->error);
+    lq_slice_solids(LQ_SLICE_CLASSIC, w->mu, w->solid);
     for (int side = 0; status == LQ_OK && side < w->gonio.sides; side++)
         status = measure_side(w, side, &list_of_sides);
     lq_gonio_free(&w->gonio);
@@ -206,8 +220,8 @@ static lq_status model_point(work *w, size_t i, const lq_spread *spread, json_t 
     json_t *figures = json_pack("{s:s}", "model", w->request->models[i].label);
     lq_status status = open_shape(w, i, &figures);
     if (status == LQ_OK) {
-        status = lq_slice_of_model(&w->shapes[i], w->mu, 0, LQ_SLICE_CLASSIC, w->solid[0],
-                                   w->request->threads, &w->model, &lobes, w->error);
+        status = lq_slice_of_model(&w->shapes[i], w->mu, 0, LQ_SLICE_CLASSIC, w->solid, w->request->threads,
+                                   &w->model, &lobes, w->error);
         if (status == LQ_OK) lq_json_set(&figures, "point", point_json(spread, &lobes[LQ_PART_REST][0]));
     } else if (status == LQ_BAD_INPUT) status = LQ_OK;
     lq_json_append(list, figures);
@@ -220,7 +234,7 @@ static lq_status measure_point(work *w, json_t **list) {
     json_t *models = json_array(), *exact = NULL;
     lq_status status = lq_spread_make(&spread, &w->mu, 1, w->error);
     if (status == LQ_OK) status = solve(w, LQ_PARTS);
-    lq_slice_solids(LQ_SLICE_CLASSIC, w->mu, w->solid[0]);
+    lq_slice_solids(LQ_SLICE_CLASSIC, w->mu, w->solid);
     if (status == LQ_OK) exact = point_json(&spread, &w->exact[LQ_PART_REST].reflected);
     for (size_t i = 0; i < r->model_count && status == LQ_OK; i++)
         status = model_point(w, i, &spread, &models);
@@ -283,10 +297,13 @@ lq_status lq_layered_measure(const lq_layered_request *r, const lq_layered_stack
  *                                       Models
  * ====================================================================================== */
 
-static bool take_change(lq_shape_query *query, const char *word) {
-    if (strcmp(word, "released") == 0) query->variant = LQ_MODEL_RELEASED;
-    else if (strcmp(word, "fit") == 0) query->f = LQ_MODEL_F_B18;
-    else if (strcmp(word, "masked") == 0) query->masked = true;
+/* How the first lobe is made is said of any model; the rest of B18's alone. */
+static bool take_change(lq_shape_query *query, bool varied, const char *word) {
+    if (strcmp(word, "exact-first") == 0) query->first = LQ_FIRST_EXACT;
+    else if (strcmp(word, "scaled-first") == 0) query->first = LQ_FIRST_SCALED;
+    else if (varied && strcmp(word, "released") == 0) query->variant = LQ_MODEL_RELEASED;
+    else if (varied && strcmp(word, "fit") == 0) query->f = LQ_MODEL_F_B18;
+    else if (varied && strcmp(word, "masked") == 0) query->masked = true;
     else return false;
     return true;
 }
@@ -301,9 +318,9 @@ lq_status lq_layered_model_parse(lq_layered_model *model, const char *label, lq_
     lq_status status = lq_model_find(word ? word : "", &model->query.model, error);
     const bool varied = status == LQ_OK && lq_model_kinds[model->query.model].varied;
     while (status == LQ_OK && (word = strtok_r(NULL, "+", &rest)))
-        if (!varied || !take_change(&model->query, word))
-            status = lq_fail(error, LQ_BAD_INPUT,
-                             "model '%s': '+%s' is accepted of the B18 models as +released, +fit or +masked",
-                             label, word);
+        if (!take_change(&model->query, varied, word))
+            status =
+                lq_fail(error, LQ_BAD_INPUT, "model '%s': '+%s'; accepted: +exact-first, +scaled-first%s",
+                        label, word, varied ? ", +released, +fit, +masked" : "");
     return status;
 }

@@ -136,9 +136,7 @@ static void put_slice(const showing *s, const lq_layered_row *row, const char *l
     lq_layered_picture(path, sizeof path, s->request->set->name, row->stack, row->theta, row->side, label);
     fprintf(s->out, "<figure><img class=\"slice\" loading=\"lazy\" src=\"%s\" alt=\"%s\"><figcaption>%s",
             path, label ? label : "measured", label ? label : "measured");
-    if (label)
-        fprintf(s->out, "<br>%.4f / %.4f", lq_layered_rmse(row, LQ_SLICE_CLASSIC, true),
-                lq_layered_rmse(row, LQ_SLICE_CLASSIC, false));
+    if (label) fprintf(s->out, "<br>%.4f / %.4f", lq_layered_rmse(row, true), lq_layered_rmse(row, false));
     fputs("</figcaption></figure>\n", s->out);
 }
 
@@ -165,7 +163,8 @@ static void put_curves(FILE *out, const lq_layered_set *set) {
     for (size_t i = 0; i < set->count; i++) {
         if (!is_curve(&set->stacks[i])) continue;
         if (i > 0 && strcmp(set->stacks[i - 1].base, set->stacks[i].base) == 0) continue;
-        fprintf(out, "<p><img src=\"%s.svg\" alt=\"%s\"></p>\n", set->stacks[i].base, set->stacks[i].base);
+        fprintf(out, "<p><img src=\"%s.png\" width=\"720\" alt=\"%s\"></p>\n", set->stacks[i].base,
+                set->stacks[i].base);
     }
 }
 

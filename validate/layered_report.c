@@ -40,14 +40,13 @@ static void put_key(FILE *out, const lq_layered_row *row) {
 
 static void put_errors(void *user, const lq_layered_row *row) {
     FILE *out = user;
+    json_t *of = json_object_get(row->figures, "rmse");
+    if (row->curve) return;
     put_key(out, row);
-    for (int layout = 0; layout < LQ_SLICE_LAYOUTS; layout++) {
-        json_t *of = json_object_get(row->figures, lq_slice_layout_names[layout]);
-        put(out, number(of, "all"));
-        put(out, number(of, "rest"));
-        put(out, number(of, "all_noise"));
-        put(out, number(of, "rest_noise"));
-    }
+    put(out, number(of, "all"));
+    put(out, number(of, "rest"));
+    put(out, number(of, "all_noise"));
+    put(out, number(of, "rest_noise"));
     fputs(row->refused ? ",refused\n" : ",\n", out);
 }
 
@@ -145,8 +144,8 @@ static lq_status draw_curve(const lq_layered_request *r, const curve *c, lq_erro
                                   .range = (const double[]){0.0, 1.0},
                                   .reference = true};
     if (status == LQ_OK) status = lq_figure_add(figure, &panel, error);
-    snprintf(path, sizeof path, "%.4000s/%.200s.svg", r->folder, c->base);
-    if (status == LQ_OK) status = lq_draw_write(figure, LQ_IMAGE_SVG, path, error);
+    snprintf(path, sizeof path, "%.4000s/%.200s.png", r->folder, c->base);
+    if (status == LQ_OK) status = lq_draw_write(figure, LQ_IMAGE_PNG, path, error);
     lq_figure_free(figure);
     lq_axis_free(&axis);
     free(values);
@@ -188,8 +187,7 @@ static lq_status write_json(const lq_layered_request *r, json_t *figures, lq_err
     return status;
 }
 
-static const char error_head[] = ",classic_all,classic_rest,classic_all_noise,classic_rest_noise,half_all,"
-                                 "half_rest,half_all_noise,half_rest_noise,note";
+static const char error_head[] = ",rmse_all,rmse_rest,noise_all,noise_rest,note";
 static const char lobe_head[] = ",part,channel,energy,energy_exact,sin2,sin2_exact,mean,mean_exact,across,"
                                 "across_exact";
 static const char point_head[] = ",first,energy,energy_exact,alpha,alpha_exact";

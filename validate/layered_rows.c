@@ -50,8 +50,8 @@ void lq_layered_rows(json_t *figures, lq_layered_take *take, void *user) {
     }
 }
 
-double lq_layered_rmse(const lq_layered_row *row, lq_slice_layout layout, bool with_direct) {
-    json_t *of = json_object_get(row->figures, lq_slice_layout_names[layout]);
+double lq_layered_rmse(const lq_layered_row *row, bool with_direct) {
+    json_t *of = json_object_get(row->figures, "rmse");
     json_t *value = json_object_get(of, with_direct ? "all" : "rest");
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
@@ -68,8 +68,8 @@ typedef struct adding {
 static void add(void *user, const lq_layered_row *row) {
     const adding *a = user;
     const size_t at = row->stack_index * a->sums->models + row->model_index;
-    const double all = lq_layered_rmse(row, LQ_SLICE_CLASSIC, true);
-    const double rest = lq_layered_rmse(row, LQ_SLICE_CLASSIC, false);
+    const double all = lq_layered_rmse(row, true);
+    const double rest = lq_layered_rmse(row, false);
     a->sums->all[at] += all * all;
     a->sums->rest[at] += rest * rest;
     a->count[at] += 1.0;

@@ -17,8 +17,8 @@ typedef struct lq_layered_row {
 typedef void lq_layered_take(void *user, const lq_layered_row *row);
 void lq_layered_rows(json_t *figures, lq_layered_take *take, void *user);
 
-/* RMSE of a row: layout, with the direct lobe or without. */
-double lq_layered_rmse(const lq_layered_row *row, lq_slice_layout layout, bool with_direct);
+/* RMSE of a row, with the direct lobe or without. */
+double lq_layered_rmse(const lq_layered_row *row, bool with_direct);
 
 /* Root mean square over angles and sides of each stack and model: [stack * models + model]; NaN: refused. */
 typedef struct lq_layered_sums {

@@ -93,8 +93,8 @@ lq_status lq_report_ranks(const lq_rank *ranks, size_t count, FILE *out, lq_erro
         rms[i] = ranks[i].rms;
     }
     const lq_plot_line series[] = {{"max", count, bytes, max, NULL, 1, false},
-                                {"p99", count, bytes, p99, NULL, 2, false},
-                                {"rms", count, bytes, rms, NULL, 0, false}};
+                                   {"p99", count, bytes, p99, NULL, 2, false},
+                                   {"rms", count, bytes, rms, NULL, 0, false}};
     const lq_plot plot = {.title = "Terms, bytes and error",
                           .subtitle = "the first terms of every sum; the last point is the file as it is",
                           .x = {"bytes in half precision", false},

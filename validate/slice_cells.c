@@ -33,26 +33,34 @@ static void mirror(double mu, lq_slice_point *p) {
     p->z = twice * p->z - mu;
 }
 
-bool lq_slice_point_at(lq_slice_layout layout, double mu, size_t cell, int sub, lq_slice_point *p) {
+void lq_slice_points(lq_slice_layout layout, double mu, size_t cell, lq_slice_point points[LQ_SLICE_POINTS]) {
     const double step = pi / 180.0 / LQ_SLICE_SUB;
-    const double theta = step * ((double)(cell / LQ_SLICE_PHI * LQ_SLICE_SUB) + sub / LQ_SLICE_SUB);
-    const double phi = step * ((double)(cell % LQ_SLICE_PHI * LQ_SLICE_SUB) + sub % LQ_SLICE_SUB + 0.5);
-    const double s = sin(theta + 0.5 * step);
-    *p = (lq_slice_point){.x = s * cos(phi),
-                          .y = s * sin(phi),
-                          .z = cos(theta + 0.5 * step),
-                          .solid = 2.0 * step * s * sin(0.5 * step)};
-    if (layout == LQ_SLICE_HALF) mirror(mu, p);
-    return p->z > 0.0 && p->solid > 0.0;
+    double cosine[LQ_SLICE_SUB], sine[LQ_SLICE_SUB];
+    for (int i = 0; i < LQ_SLICE_SUB; i++) {
+        const double phi = step * ((double)(cell % LQ_SLICE_PHI * LQ_SLICE_SUB) + i + 0.5);
+        cosine[i] = cos(phi);
+        sine[i] = sin(phi);
+    }
+    for (int i = 0; i < LQ_SLICE_POINTS; i++) {
+        const int row = i / LQ_SLICE_SUB, column = i % LQ_SLICE_SUB;
+        const double theta = step * ((double)(cell / LQ_SLICE_PHI * LQ_SLICE_SUB) + row + 0.5);
+        const double s = column ? points[i - column].x : sin(theta);
+        points[i] = (lq_slice_point){.x = s, .z = column ? points[i - column].z : cos(theta)};
+        points[i].solid = 2.0 * step * s * sin(0.5 * step);
+    }
+    for (int i = 0; i < LQ_SLICE_POINTS; i++) {
+        lq_slice_point *p = &points[i];
+        p->y = p->x * sine[i % LQ_SLICE_SUB];
+        p->x *= cosine[i % LQ_SLICE_SUB];
+        if (layout == LQ_SLICE_HALF) mirror(mu, p);
+    }
 }
 
 void lq_slice_solids(lq_slice_layout layout, double mu, double *solid) {
     for (size_t cell = 0; cell < LQ_SLICE_CELLS; cell++) {
+        lq_slice_point points[LQ_SLICE_POINTS];
+        lq_slice_points(layout, mu, cell, points);
         solid[cell] = 0.0;
-        for (int sub = 0; sub < LQ_SLICE_SUB * LQ_SLICE_SUB; sub++) {
-            lq_slice_point p;
-            lq_slice_point_at(layout, mu, cell, sub, &p);
-            solid[cell] += p.solid;
-        }
+        for (int i = 0; i < LQ_SLICE_POINTS; i++) solid[cell] += points[i].solid;
     }
 }

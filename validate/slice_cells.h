@@ -14,7 +14,6 @@
 #ifndef LACQUER_VALIDATE_SLICE_CELLS_H
 #define LACQUER_VALIDATE_SLICE_CELLS_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 typedef enum lq_slice_layout { LQ_SLICE_CLASSIC, LQ_SLICE_HALF, LQ_SLICE_LAYOUTS } lq_slice_layout;
@@ -31,12 +30,13 @@ enum {
  * mu. */
 size_t lq_slice_cell(lq_slice_layout layout, double mu, double x, double y, double z);
 
-/* The middle of a sub-cell as the direction light leaves in, and the solid angle of such directions; false:
- * none, they are below the horizon (the solid angle is set all the same). */
+/* The middles of a cell's sub-cells as directions light leaves in, and the solid angle of such directions;
+ * z <= 0: none does, they are below the horizon (the solid angle counts all the same). */
+enum { LQ_SLICE_POINTS = LQ_SLICE_SUB * LQ_SLICE_SUB };
 typedef struct lq_slice_point {
     double x, y, z, solid;
 } lq_slice_point;
-bool lq_slice_point_at(lq_slice_layout layout, double mu, size_t cell, int sub, lq_slice_point *point);
+void lq_slice_points(lq_slice_layout layout, double mu, size_t cell, lq_slice_point points[LQ_SLICE_POINTS]);
 
 /* Of each cell. */
 void lq_slice_solids(lq_slice_layout layout, double mu, double *solid);

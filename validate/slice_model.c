@@ -21,12 +21,18 @@ static void fold(const float *value, const float *noise, float *folded, float *v
     }
 }
 
-void lq_slice_fold(const lq_gonio *g, int side, lq_slice_layout layout, const double *solid,
+lq_gonio_part lq_slice_part(int side, bool inside, int part, int channel) {
+    const int direct_to = inside ? -1 : 0;
+    return part == LQ_PART_DIRECT ? (lq_gonio_part){side, 0, direct_to, channel}
+                                  : (lq_gonio_part){side, direct_to + 1, LQ_GONIO_ORDERS - 1, channel};
+}
+
+void lq_slice_fold(const lq_gonio *g, int side, bool inside, lq_slice_layout layout, const double *solid,
                    lq_slice_pair *pair) {
     float value[LQ_SLICE_CELLS], noise[LQ_SLICE_CELLS];
     for (int part = 0; part < LQ_PARTS; part++)
         for (int c = 0; c < g->channels; c++) {
-            const lq_gonio_part orders = {side, part, part ? LQ_GONIO_ORDERS - 1 : 0, c};
+            const lq_gonio_part orders = lq_slice_part(side, inside, part, c);
             lq_gonio_slice(g, layout, &orders, solid, value, noise);
             fold(value, noise, pair->value[part][c], pair->variance[part][c]);
         }
@@ -61,15 +67,17 @@ static void add(sums *to, double flux, const lq_slice_point *p) {
 static void run_cell(const rows *r, size_t row, size_t phi) {
     double value[LQ_PARTS][LQ_STACK_CHANNELS], flux[LQ_PARTS][LQ_STACK_CHANNELS] = {{0.0}};
     const size_t cell = row * LQ_SLICE_PHI + phi;
-    for (int sub = 0; sub < LQ_SLICE_SUB * LQ_SLICE_SUB; sub++) {
-        lq_slice_point p;
-        if (!lq_slice_point_at(r->layout, r->mu, cell, sub, &p)) continue;
-        lq_model_shape_value(r->shape, p.x, p.y, r->side ? -p.z : p.z, value[LQ_PART_DIRECT],
+    lq_slice_point points[LQ_SLICE_POINTS];
+    lq_slice_points(r->layout, r->mu, cell, points);
+    for (int i = 0; i < LQ_SLICE_POINTS; i++) {
+        const lq_slice_point *p = &points[i];
+        if (!(p->z > 0.0 && p->solid > 0.0)) continue;
+        lq_model_shape_value(r->shape, p->x, p->y, r->side ? -p->z : p->z, value[LQ_PART_DIRECT],
                              value[LQ_PART_REST]);
         for (int part = 0; part < LQ_PARTS; part++)
             for (int c = 0; c < r->shape->channels; c++) {
-                flux[part][c] += value[part][c] * p.solid;
-                add(&r->sums[row][part][c], value[part][c] * p.solid, &p);
+                flux[part][c] += value[part][c] * p->solid;
+                add(&r->sums[row][part][c], value[part][c] * p->solid, p);
             }
     }
     const double scale = r->solid[cell] > 0.0 ? 1.0 / r->solid[cell] : 0.0;

@@ -26,8 +26,11 @@ typedef struct lq_slice_pair {
     lq_folded variance[LQ_PARTS][LQ_STACK_CHANNELS]; /* measured: of the noise; a model: 0 */
 } lq_slice_pair;
 
-/* What was measured: order 1 is direct, the others are the rest. */
-void lq_slice_fold(const lq_gonio *gonio, int side, lq_slice_layout layout, const double *solid,
+/* Which orders are a part: `inside`, all of this side's light was (what leaves below a stack of several
+ * interfaces); otherwise what met the first interface once is direct. */
+lq_gonio_part lq_slice_part(int side, bool inside, int part, int channel);
+
+void lq_slice_fold(const lq_gonio *gonio, int side, bool inside, lq_slice_layout layout, const double *solid,
                    lq_slice_pair *pair);
 
 /* The same of a model, and (where not NULL) energy and moments of each part in every colour, summed over the

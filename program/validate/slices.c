@@ -107,8 +107,8 @@ static lq_status measure(slice_job *job, size_t m, lq_error *error) {
     cli_progress bar;
     query.mu = &job->query.mu[m];
     cli_progress_begin(&bar, "walks");
-    lq_status status = lq_gonio_measure(&g, job->stack, &query, job->request->samples, job->request->seed,
-                                        &bar.progress, error);
+    lq_status status = lq_gonio_measure(&g, job->stack, &query, LQ_SLICE_LAYOUTS, job->request->samples,
+                                        job->request->seed, &bar.progress, error);
     cli_progress_end(&bar);
     if (status == LQ_OK) compare(job, &g, m);
     for (int side = 0; status == LQ_OK && side < g.sides; side++)
