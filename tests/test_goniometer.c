@@ -3,6 +3,7 @@
 #include "validate/goniometer.h"
 
 #include "microfacet/ndf.h"
+#include "validate/slice_model.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -163,6 +164,35 @@ static void test_cells_and_points(void **state) {
         }
 }
 
+/* What noise adds is taken off: of a true model nothing is left, of one that is off by as much everywhere
+ * that much; and the light that was inside is apart from the direct. */
+static void test_rmse(void **state) {
+    (void)state;
+    enum { OFF = 1 };
+    static double solid[LQ_SLICE_CELLS];
+    static lq_slice_pair measured, model;
+    lq_gonio g = measure(MATTE, 0.6, false, 0);
+    lq_slice_solids(LQ_SLICE_CLASSIC, g.mu, solid);
+    lq_slice_fold(&g, 0, false, LQ_SLICE_CLASSIC, solid, &measured);
+    for (size_t i = 0; i < LQ_FOLDED_CELLS; i++) {
+        lq_slice_point points[LQ_SLICE_POINTS];
+        double flux = 0.0;
+        const size_t cell = i / LQ_FOLDED_PHI * LQ_SLICE_PHI + i % LQ_FOLDED_PHI;
+        lq_slice_points(LQ_SLICE_CLASSIC, g.mu, cell, points);
+        for (int k = 0; k < LQ_SLICE_POINTS; k++)
+            flux += 0.5 / 3.14159265358979 * points[k].z * points[k].solid;
+        model.value[LQ_PART_DIRECT][0][i] = (float)(flux / solid[cell]);
+    }
+    const lq_slice_error right = lq_slice_compare(&model, &measured, 1, true);
+    assert_true(right.noise > 0.01 && right.rmse < 0.25 * right.noise);
+    for (size_t i = 0; i < LQ_FOLDED_CELLS; i++) model.value[LQ_PART_DIRECT][0][i] += OFF;
+    assert_near(lq_slice_compare(&model, &measured, 1, true).rmse, OFF, 0.01);
+    assert_near(lq_slice_compare(&model, &measured, 1, false).rmse, 0.0, 0.0);
+    lq_slice_fold(&g, 0, true, LQ_SLICE_CLASSIC, solid, &measured);
+    assert_true(lq_slice_compare(&model, &measured, 1, false).rmse > 0.05);
+    lq_gonio_free(&g);
+}
+
 static void test_threads(void **state) {
     (void)state;
     lq_gonio one = measure(SLAB, 0.7, false, 1), three = measure(SLAB, 0.7, false, 3);
@@ -198,6 +228,7 @@ int main(void) {
         cmocka_unit_test(test_cells_and_points),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_rmse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
