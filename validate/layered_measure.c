@@ -26,6 +26,7 @@ typedef struct work {
     lq_slice_pair measured, model;
     lq_model_shape shapes[LQ_LAYERED_MODELS]; /* one a model, turned from angle to angle */
     double aimed[LQ_LAYERED_MODELS];          /* at this cosine; 0: not made */
+    lq_model_mapping mapping[2];              /* by lq_model_f */
     lq_error *error;
 } work;
 
@@ -135,6 +136,7 @@ static lq_status put_in_cells(work *w, const lq_model_shape *shape, int side, co
 static lq_status aim(work *w, size_t i, lq_error *error) {
     lq_shape_query query = w->request->models[i].query;
     query.threads = w->request->threads;
+    query.mapping = &w->mapping[query.f];
     if (w->aimed[i] == w->mu) return LQ_OK;
     if (w->aimed[i] > 0.0) return lq_model_shape_aim(&w->shapes[i], w->mu, error);
     return lq_model_shape_make(&w->shapes[i], w->stack->stack, &query, w->mu, error);
@@ -273,6 +275,9 @@ lq_status lq_layered_measure(const lq_layered_request *r, const lq_layered_stack
     json_t *angles = json_array();
     work *w = calloc(1, sizeof *w);
     lq_status status = w ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for slices");
+    if (status == LQ_OK)
+        status = lq_model_mapping_make(&w->mapping[LQ_MODEL_F_EXACT], LQ_MODEL_F_EXACT, error);
+    if (status == LQ_OK) status = lq_model_mapping_make(&w->mapping[LQ_MODEL_F_B18], LQ_MODEL_F_B18, error);
     for (size_t i = 0; i < r->set->theta_count && status == LQ_OK; i++) {
         w->request = r;
         w->stack = stack;
