@@ -119,16 +119,32 @@ static void take_point(void *user, const lq_layered_row *row) {
     c->y[c->models * LQ_LAYERED_MAX + at] = (float)number(row->exact, "alpha");
 }
 
+/* Evenly where the points are, so that what is a line looks like one. */
+static lq_status curve_axis(const curve *c, lq_axis *axis, lq_error *error) {
+    const double first = c->x[0], last = c->x[c->points - 1];
+    bool even = true;
+    for (size_t i = 0; i < c->points; i++)
+        even &= fabs(c->x[i] - first - (last - first) * (double)i / (double)(c->points - 1)) < 1e-9;
+    return even ? lq_axis_make(axis, "alpha0", first, last, c->points, LQ_MAP_LINEAR, 0.0, error)
+                : lq_axis_make_custom(axis, "alpha0", c->x, c->points, error);
+}
+
+/* Legends are narrow: of a long name what it departs by. */
+static const char *short_name(const char *label) {
+    const char *change = strchr(label, '+');
+    return change && strlen(label) > 12 ? change : label;
+}
+
 static lq_status draw_curve(const lq_layered_request *r, const curve *c, lq_error *error) {
     const char *names[LQ_LAYERED_MODELS + 1];
     char path[5000];
     float *values = malloc((c->models + 1) * c->points * sizeof *values);
     lq_axis axis = {.size = 0};
     lq_figure *figure = NULL;
-    lq_status status = values ? lq_axis_make_custom(&axis, "alpha0", c->x, c->points, error)
-                              : lq_fail(error, LQ_NO_MEMORY, "no memory for a curve");
+    lq_status status =
+        values ? curve_axis(c, &axis, error) : lq_fail(error, LQ_NO_MEMORY, "no memory for a curve");
     for (size_t i = 0; i <= c->models; i++) {
-        names[i] = i < c->models ? r->models[i].label : "exact";
+        names[i] = i < c->models ? short_name(r->models[i].label) : "exact";
         for (size_t k = 0; values && k < c->points; k++)
             values[i * c->points + k] = c->y[i * LQ_LAYERED_MAX + k];
     }
