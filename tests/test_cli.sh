@@ -151,19 +151,23 @@ idle fit report texture snippet family range points norm loss samples -- transmi
 tries=
 certificate='certificate on table parts junit report'
 light='mu interfaces from'
+layered='set model'
 idle bench csv svg full scattering masking stack allow-plugin -- --report /proc/x
 idle bench svg points report ndf scattering masking -- stack --csv /proc/x
 idle stack interfaces from paths tolerance -- files/empty --model b18-forward
 idle stack variant mapping -- files/empty
 idle validate against layout kind axes diagnose samples points seed budget $certificate \
-    scattering masking tolerance $light -- hard-cases
-idle validate against layout kind axes diagnose points budget $certificate ndf scattering masking -- \
+    scattering masking tolerance $light slices $layered -- hard-cases
+idle validate against layout kind axes diagnose points budget $certificate ndf scattering masking $layered -- \
     stack files/empty
-idle validate against layout kind diagnose samples $certificate ndf scattering masking tolerance $light -- \
+idle validate against layout kind axes diagnose points budget certificate on table parts junit ndf scattering masking \
+    tolerance format json allow-plugin $light slices -- layered
+idle validate against layout kind diagnose samples $certificate ndf scattering masking tolerance $light slices $layered -- \
     files/empty --axes files/empty
-idle validate layout kind samples $certificate ndf scattering masking tolerance $light -- files/empty --diagnose
-idle validate samples $certificate $light -- files/empty --layout tm --kind fgd
-idle validate ndf scattering masking tolerance kind $light -- files/empty
+idle validate layout kind samples $certificate ndf scattering masking tolerance $light slices $layered -- \
+    files/empty --diagnose
+idle validate samples $certificate $light slices $layered -- files/empty --layout tm --kind fgd
+idle validate ndf scattering masking tolerance kind $light slices $layered -- files/empty
 slices='x y at channel range'
 echo '{}' >files/empty.json
 idle view layout kind tolerance allow-plugin threads -- files/empty --axes files/empty -o folder/x.png

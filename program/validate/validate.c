@@ -138,7 +138,7 @@ static const cli_option options[] = {
     CLI_LIGHT_OPTIONS(validate_request, STACKED),
     {SLICES, "slices", "DIR", "write where the walks leave, as EXR and PNG; compare energies by order",
      CLI_TEXT(validate_request, slices), .modes = STACKED},
-    {SET, "set", "ba19|b18|d22|FILE", "the stacks that models are measured on (default ba19)",
+    {SET, "set", "SET", "stacks that models are measured on: ba19, b18, d22 or a file (default ba19)",
      CLI_TEXT(validate_request, set), .modes = LAYERED},
     {MODEL, "model", "NAME,...", "models to measure (default: all that `lacquer stack --model` takes)",
      CLI_TEXT(validate_request, models), .modes = LAYERED},
