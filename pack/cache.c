@@ -223,8 +223,7 @@ static void clear_leftover(const char *cache, const char *name) {
     close(folder);
 }
 
-/* What runs that were killed left in the cache. */
-static void clear_leftovers(const char *cache) {
+void lq_cache_clear(const char *cache) {
     DIR *list = opendir(cache);
     for (struct dirent *entry; list && (entry = readdir(list));)
         if (strlen(entry->d_name) == sizeof PLACE_NAME - 1 && strncmp(entry->d_name, PLACE_NAME, 4) == 0)
@@ -251,7 +250,7 @@ static lq_status open_place(place *p, const char *cache, lq_error *error) {
     lq_status status = make_folders(cache) ? lq_cache_check(cache, error)
                                            : lq_fail(error, LQ_IO, "the cache %s cannot be made: %m", cache);
     if (status != LQ_OK) return status;
-    clear_leftovers(cache);
+    lq_cache_clear(cache);
     if (!make_place(p, cache)) return lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", cache);
     snprintf(p->file, sizeof p->file, "%s/%s", p->path, FILE_NAME);
     return LQ_OK;

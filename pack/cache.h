@@ -11,6 +11,9 @@ bool lq_cache_default(char *folder, size_t size);
  * names it. */
 lq_status lq_cache_check(const char *folder, lq_error *error);
 
+/* Remove what runs that were killed left in it, and no run at work uses. */
+void lq_cache_clear(const char *folder);
+
 /* The table stored for `key`, or NULL. A file that is a link, not a file of the user's own, damaged, of
  * another key or over other axes than these is no table. */
 lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes, int axis_count);

@@ -151,7 +151,7 @@ idle fit report texture snippet family range points norm loss samples -- transmi
 tries=
 certificate='certificate on table parts junit report'
 light='mu interfaces from'
-layered='set model'
+layered='set model tables'
 idle bench csv svg full scattering masking stack allow-plugin -- --report /proc/x
 idle bench svg points report ndf scattering masking -- stack --csv /proc/x
 idle stack interfaces from paths tolerance -- files/empty --model b18-forward

@@ -62,6 +62,8 @@ refused 'no folder; usage' validate layered
 refused "no set 'other'; accepted: ba19, b18, d22" validate layered --report r --set other
 refused "no model 'x'; accepted: .*baked" validate layered --report r --model x
 refused "'baked\+released'|'\+released'; accepted: \+exact-first" validate layered --report r --model baked+released
+refused "of which pack" validate layered --report r --model b18-forward+tables
+refused 'no effect where no model is named with .tables' validate layered --report r --model baked --tables .
 refused "'baked' twice" validate layered --report r --model baked,baked
 refused '--set has no effect' validate x.exr --set ba19
 refused '--mu has no effect for layered' validate layered --report r --mu 0.5

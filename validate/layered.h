@@ -15,10 +15,11 @@
 
 /* "b18-forward", and with what departs from its defaults: "+exact-first" or "+scaled-first" (the first lobe
  * is the top interface's BRDF, Ba19 eq. 6, or that with the model's energy); of the B18 models "+released",
- * "+fit" (B18's own f), "+masked" (lobes without their albedo). */
+ * "+fit" (B18's own f), "+masked" (lobes without their albedo), "+tables" (coefficients by a pack). */
 typedef struct lq_layered_model {
     char label[64];
     lq_shape_query query;
+    bool tables; /* `source` of the request, for computed ones */
 } lq_layered_model;
 
 enum { LQ_LAYERED_MODELS = 24 };
@@ -32,7 +33,9 @@ typedef struct lq_layered_request {
     size_t samples;
     uint64_t seed;
     int threads;
-    const char *folder; /* of the report; with a folder "slices" */
+    const char *folder;            /* of the report; with a folder "slices" */
+    const lq_model_source *source; /* for models that take one; NULL: there is none */
+    const char *source_sum;        /* which tables these are: text that changes with them */
 } lq_layered_request;
 
 /* What a stack's figures depend on. NULL: no memory. */

@@ -137,6 +137,7 @@ static lq_status aim(work *w, size_t i, lq_error *error) {
     lq_shape_query query = w->request->models[i].query;
     query.threads = w->request->threads;
     query.mapping = &w->mapping[query.f];
+    if (w->request->models[i].tables) query.source = w->request->source;
     if (w->aimed[i] == w->mu) return LQ_OK;
     if (w->aimed[i] > 0.0) return lq_model_shape_aim(&w->shapes[i], w->mu, error);
     return lq_model_shape_make(&w->shapes[i], w->stack->stack, &query, w->mu, error);
@@ -257,10 +258,11 @@ json_t *lq_layered_settings(const lq_layered_request *r, const lq_layered_stack 
     for (size_t i = 0; i < r->set->theta_count; i++)
         lq_json_append(&thetas, lq_json_number(r->set->theta[i]));
     for (size_t i = 0; i < r->model_count; i++) lq_json_append(&models, lq_json_text(r->models[i].label));
-    json_t *settings = json_pack(
-        "{s:s, s:s, s:s, s:s, s:f, s:o, s:o, s:I, s:I, s:o}", "version", LQ_VERSION, "set", r->set->name,
-        "category", stack->category, "base", stack->base, "first", stack->first, "stack", lq_json_text(text),
-        "theta", thetas, "samples", (json_int_t)r->samples, "seed", (json_int_t)r->seed, "models", models);
+    json_t *settings =
+        json_pack("{s:s, s:s, s:s, s:s, s:f, s:o, s:o, s:I, s:I, s:o, s:s}", "version", LQ_VERSION, "set",
+                  r->set->name, "category", stack->category, "base", stack->base, "first", stack->first,
+                  "stack", lq_json_text(text), "theta", thetas, "samples", (json_int_t)r->samples, "seed",
+                  (json_int_t)r->seed, "models", models, "tables", r->source_sum ? r->source_sum : "");
     free(text);
     return settings;
 }
@@ -303,12 +305,14 @@ lq_status lq_layered_measure(const lq_layered_request *r, const lq_layered_stack
  * ====================================================================================== */
 
 /* How the first lobe is made is said of any model; the rest of B18's alone. */
-static bool take_change(lq_shape_query *query, bool varied, const char *word) {
+static bool take_change(lq_layered_model *model, bool varied, const char *word) {
+    lq_shape_query *query = &model->query;
     if (strcmp(word, "exact-first") == 0) query->first = LQ_FIRST_EXACT;
     else if (strcmp(word, "scaled-first") == 0) query->first = LQ_FIRST_SCALED;
     else if (varied && strcmp(word, "released") == 0) query->variant = LQ_MODEL_RELEASED;
     else if (varied && strcmp(word, "fit") == 0) query->f = LQ_MODEL_F_B18;
     else if (varied && strcmp(word, "masked") == 0) query->masked = true;
+    else if (varied && strcmp(word, "tables") == 0) model->tables = true;
     else return false;
     return true;
 }
@@ -323,9 +327,9 @@ lq_status lq_layered_model_parse(lq_layered_model *model, const char *label, lq_
     lq_status status = lq_model_find(word ? word : "", &model->query.model, error);
     const bool varied = status == LQ_OK && lq_model_kinds[model->query.model].varied;
     while (status == LQ_OK && (word = strtok_r(NULL, "+", &rest)))
-        if (!take_change(&model->query, varied, word))
+        if (!take_change(model, varied, word))
             status =
                 lq_fail(error, LQ_BAD_INPUT, "model '%s': '+%s'; accepted: +exact-first, +scaled-first%s",
-                        label, word, varied ? ", +released, +fit, +masked" : "");
+                        label, word, varied ? ", +released, +fit, +masked, +tables" : "");
     return status;
 }

@@ -8,6 +8,7 @@
 #include "validate/report_ranks.h"
 
 #include <math.h>
+#include <unistd.h>
 
 static const char style[] =
     "body{font:15px/1.5 system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif;margin:2em "
@@ -170,14 +171,21 @@ static lq_status put_page(FILE *out, const lq_certified *list, size_t count, lq_
     return status;
 }
 
-lq_status lq_report_html(const lq_certified *list, size_t count, const char *folder, lq_error *error) {
+static lq_status save_page(const lq_certified *list, size_t count, const char *folder, lq_error *error) {
     char path[4096];
     lq_stream stream;
-    const lq_status made = lq_output_folder(folder, error);
-    if (made != LQ_OK) return made;
     if ((size_t)snprintf(path, sizeof path, "%s/index.html", folder) >= sizeof path)
         return lq_fail(error, LQ_BAD_INPUT, "the name of the report's folder is too long");
     const lq_status opened = lq_stream_open(&stream, path, error);
     if (opened != LQ_OK) return opened;
     return lq_stream_close(&stream, put_page(stream.out, list, count, error), error);
+}
+
+lq_status lq_report_html(const lq_certified *list, size_t count, const char *folder, lq_error *error) {
+    const bool was_there = access(folder, F_OK) == 0;
+    lq_status status = lq_output_folder(folder, error);
+    if (status != LQ_OK) return status;
+    status = save_page(list, count, folder, error);
+    if (status != LQ_OK && !was_there) rmdir(folder); /* no stray folder for a page that is not */
+    return status;
 }

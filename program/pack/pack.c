@@ -221,6 +221,7 @@ static int pack(pack_request *r, lq_packing *packing) {
     lq_status status = lq_folder_check(r->output, &error); /* before the work */
     cli_signals_release();
     if (status == LQ_OK) status = lq_cache_check(r->cache, &error);
+    if (status == LQ_OK) lq_cache_clear(r->cache);
     if (status == LQ_OK) status = make_all(r, packing, &error);
     if (status != LQ_OK) return cli_fail_status(status, &error);
     const int code = judge(r, packing);

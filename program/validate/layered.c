@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "pack/contents.h"
+#include "pack/model_source.h"
 #include "program/beside.h"
 #include "program/message.h"
 #include "program/validate/validate.h"
@@ -20,6 +22,9 @@ typedef struct layered_job {
     lq_layered_set set;
     lq_layered_model models[LQ_LAYERED_MODELS];
     lq_layered_request asked;
+    lq_pack pack;
+    lq_model_source source;
+    char source_sum[9];
     json_t *figures;
     size_t kept, done;
     const char *current;
@@ -75,6 +80,30 @@ static lq_status open_models(layered_job *job, lq_error *error) {
     return status;
 }
 
+/* A pack is known by its manifest, which has the checksums of its files. */
+static lq_status open_tables(layered_job *job, lq_error *error) {
+    const char *folder = job->request->tables;
+    bool wanted = false;
+    for (size_t i = 0; i < job->asked.model_count; i++) wanted |= job->models[i].tables;
+    if (wanted != (folder != NULL)) {
+        snprintf(error->text, sizeof error->text, "%s",
+                 folder ? "--tables has no effect where no model is named with +tables"
+                        : "--model: '+tables' of which pack? accepted: with --tables DIR");
+        return LQ_BAD_INPUT;
+    }
+    if (!folder) return LQ_OK;
+    const lq_status status = lq_pack_read(&job->pack, folder, error);
+    if (status != LQ_OK) return status;
+    if (!lq_contents_checksum(folder, "manifest.json", job->source_sum)) {
+        snprintf(error->text, sizeof error->text, "%.300s: its manifest cannot be read", folder);
+        return LQ_IO;
+    }
+    job->source = lq_pack_source(&job->pack);
+    job->asked.source = &job->source;
+    job->asked.source_sum = job->source_sum;
+    return LQ_OK;
+}
+
 static lq_status open_folders(const layered_job *job, lq_error *error) {
     static const char *const below[] = {"", "/finished", "/slices"};
     char path[PATH_MAX];
@@ -104,6 +133,7 @@ static lq_status prepare(layered_job *job, lq_error *error) {
     }
     lq_status status = open_set(job, error);
     if (status == LQ_OK) status = open_models(job, error);
+    if (status == LQ_OK) status = open_tables(job, error);
     if (status == LQ_OK) status = open_folders(job, error);
     return status;
 }
@@ -191,6 +221,7 @@ int validate_layered(const validate_request *request) {
                job->set.name, job->kept, job->asked.folder);
     const int code = status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
     lq_layered_set_free(&job->set);
+    lq_pack_free(&job->pack);
     free(job);
     return code;
 }

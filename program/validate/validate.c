@@ -26,6 +26,7 @@ enum {
     DIAGNOSE,
     SLICES,
     SET,
+    TABLES,
     MODEL
 };
 
@@ -142,6 +143,8 @@ static const cli_option options[] = {
      CLI_TEXT(validate_request, set), .modes = LAYERED},
     {MODEL, "model", "NAME,...", "models to measure (default: all that `lacquer stack --model` takes)",
      CLI_TEXT(validate_request, models), .modes = LAYERED},
+    {TABLES, "tables", "DIR", "the pack that models named with +tables look up (default: computed tables)",
+     CLI_TEXT(validate_request, tables), .modes = LAYERED},
     CLI_THREADS_OPTION(validate_request, 0),
     {0},
 };

@@ -36,6 +36,7 @@ typedef struct validate_request {
     cli_light light;          /* what meets it */
     const char *slices;       /* folder for what walks through it leave, by direction */
     const char *set, *models; /* of `validate layered`; NULL: ba19, all models */
+    const char *tables;       /* a pack, for its models that take one */
 } validate_request;
 
 /* The lists, in the order they are reported. */
