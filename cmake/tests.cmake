@@ -55,3 +55,8 @@ foreach(source IN LISTS test_scripts)
 endforeach()
 
 include(cmake/fuzz.cmake)
+
+# What one computes the other finds in the cache.
+if(TEST test_readme_slow)
+  set_tests_properties(test_readme_slow PROPERTIES DEPENDS test_pack_recipes_slow)
+endif()

@@ -12,6 +12,8 @@ mkdir blocks bin
 ln -s "$LACQUER" bin/lacquer
 ln -s "$source/recipes" recipes
 PATH=$work/bin:$PATH
+# Tables that test_pack_recipes_slow.sh made with this program, where it ran.
+export XDG_CACHE_HOME=${LACQUER_BUILD:-$source/build/release}/test-cache
 
 awk '/^```sh$/ { inside = 1; n++; next }
      /^```$/   { inside = 0 }
