@@ -37,7 +37,8 @@ whole() { # WHAT: every result that is there is the old one or the new one; `str
         *" $name "*)
             # Killed: a folder may be there, with nothing in it but what the next run clears.
             [ "${strict:-}" != no ] || [ ! -d "place/$name" ] || [ -n "$(find "place/$name" -type f ! -name '.lacquer-*')" ] || continue
-            diff -rq "place/$name" "old/$name" >/dev/null 2>&1 || diff -rq "place/$name" "new/$name" >/dev/null 2>&1 ||
+            diff -rq -x '.lacquer-*' "place/$name" "old/$name" >/dev/null 2>&1 ||
+                diff -rq -x '.lacquer-*' "place/$name" "new/$name" >/dev/null 2>&1 ||
                 fail "$1: $name is neither the old nor the new one"
             ;;
         *) [ "${strict:-}" = no ] || fail "$1: left $name" ;;
