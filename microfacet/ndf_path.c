@@ -17,14 +17,6 @@ static uint64_t hash_bytes(const char *bytes, size_t size) {
     return hash;
 }
 
-static lq_status read_bytes(lq_ndf_path *path, lq_error *error) {
-    FILE *in; /* refuses a file that is too large to be one */
-    const lq_status status = lq_input_open(&in, path->path, LQ_NDF_FILE_LARGEST, error);
-    if (status != LQ_OK) return status;
-    fclose(in);
-    return lq_input_read(path->path, &path->bytes, &path->size, error);
-}
-
 /* The end of PATH in PATH#HASH; the whole length where there is no such hash. */
 static size_t path_length(const char *text) {
     const char *mark = strrchr(text, '#');
@@ -42,7 +34,8 @@ lq_status lq_ndf_path_make(lq_ndf_path *path, const char *family, const char *te
     path->path = strndup(text, length);
     path->id = malloc(room);
     if (!path->path || !path->id) return lq_fail(error, LQ_NO_MEMORY, "no memory for a path");
-    const lq_status status = read_bytes(path, error);
+    const lq_status status =
+        lq_input_read_within(path->path, LQ_NDF_FILE_LARGEST, &path->bytes, &path->size, error);
     if (status != LQ_OK) return status;
     snprintf(path->id, room, "%s:%s#%016" PRIx64, family, path->path, hash_bytes(path->bytes, path->size));
     const char *wanted = text + length, *found = path->id + strlen(path->id) - HASH_DIGITS;

@@ -4,6 +4,7 @@
 
 #include "pca/factors.h"
 #include "pca/factors_json.h"
+#include "system/leftover.h"
 #include "system/status.h"
 
 #include <dirent.h>
@@ -206,7 +207,8 @@ static bool is_own_folder(int folder) {
 static void clear_files(int folder) {
     DIR *list = fdopendir(dup(folder));
     for (struct dirent *entry; list && (entry = readdir(list));)
-        if (strcmp(entry->d_name, FILE_NAME) == 0 || strncmp(entry->d_name, ".lacquer-", 9) == 0)
+        if (strcmp(entry->d_name, FILE_NAME) == 0 ||
+            strncmp(entry->d_name, LQ_TEMPORARY, sizeof LQ_TEMPORARY - 1) == 0)
             unlinkat(folder, entry->d_name, 0);
     if (list) closedir(list);
 }
@@ -250,7 +252,6 @@ static lq_status open_place(place *p, const char *cache, lq_error *error) {
     lq_status status = make_folders(cache) ? lq_cache_check(cache, error)
                                            : lq_fail(error, LQ_IO, "the cache %s cannot be made: %m", cache);
     if (status != LQ_OK) return status;
-    lq_cache_clear(cache);
     if (!make_place(p, cache)) return lq_fail(error, LQ_IO, "the cache %s cannot be written: %m", cache);
     snprintf(p->file, sizeof p->file, "%s/%s", p->path, FILE_NAME);
     return LQ_OK;

@@ -11,7 +11,7 @@ bool lq_cache_default(char *folder, size_t size);
  * names it. */
 lq_status lq_cache_check(const char *folder, lq_error *error);
 
-/* Remove what runs that were killed left in it, and no run at work uses. */
+/* Remove what runs that were killed left in it, and no run at work uses: once, before a run. */
 void lq_cache_clear(const char *folder);
 
 /* The table stored for `key`, or NULL. A file that is a link, not a file of the user's own, damaged, of
@@ -19,8 +19,7 @@ void lq_cache_clear(const char *folder);
 lq_table *lq_cache_find(const char *folder, const char *key, const lq_axis *axes, int axis_count);
 
 /* Store it; it gets the facts "cache-key" and "cache-sum". Two runs may do so at once: each file appears
- * whole, and both write the same. The folder is made where it is missing, and cleared of what a killed run
- * left. LQ_IO: it cannot be written. */
+ * whole, and both write the same. The folder is made where it is missing. LQ_IO: it cannot be written. */
 lq_status lq_cache_store(const char *folder, const char *key, lq_table *table, lq_error *error);
 
 /* The same for factors, of a table between the ends of these axes. */

@@ -35,17 +35,13 @@ static lq_model_lobe lobe_of(double energy, double mean, double alpha) {
                         : (lq_model_lobe){0};
 }
 
-static double sine_of(double mu) {
-    return sqrt((1.0 - mu) * (1.0 + mu));
-}
-
 /* ======================================================================================
  *                                   Opaque: as a material
  * ====================================================================================== */
 
 static void read_numbers(const baking *b, const lq_material *material, size_t m, const double *n) {
     const size_t last = b->stack->layer_count - 1;
-    const double away = sine_of(b->query->mu[m]);
+    const double away = lq_sine(b->query->mu[m]);
     for (int c = 0; c < lq_stack_channels(b->stack); c++) {
         lq_model_lobe *lobes = lobes_at(b, m, c);
         const double inner = n[LQ_MATERIAL_INNER + c];
@@ -76,7 +72,7 @@ static lq_status bake_opaque(const baking *b, const lq_material *material, lq_er
 
 /* Between the outside and the lowest medium; light that does not refract leaves along the horizon. */
 static double sine_below(const lq_stack *stack, double mu, int channel) {
-    return fmin(sine_of(mu) / stack->layers[stack->layer_count - 1].n.value[channel], 1.0);
+    return fmin(lq_sine(mu) / stack->layers[stack->layer_count - 1].n.value[channel], 1.0);
 }
 
 static lq_status read_through(const baking *b, size_t m, int channel, const lq_stack_light *paths,
@@ -85,15 +81,15 @@ static lq_status read_through(const baking *b, size_t m, int channel, const lq_s
     const double mu = b->query->mu[m], below = sine_below(b->stack, mu, channel);
     const lq_stack_lobe *top = &paths[0].reflected, *inner = &paths[1].reflected;
     const lq_stack_lobe *one = &paths[0].transmitted, *more = &paths[1].transmitted;
-    const double through = one->energy + more->energy, cosine = sine_of(below);
+    const double through = one->energy + more->energy, cosine = lq_sine(below);
     lq_model_lobe *lobes = lobes_at(b, m, channel);
     lq_spread spread = {0};
     const lq_status status = lq_spread_make(&spread, &cosine, 1, error);
     if (status != LQ_OK) return status;
     for (size_t k = 0; k <= last + 1; k++) lobes[k] = (lq_model_lobe){0};
-    lobes[0] = lobe_of(top->energy, sine_of(mu), b->stack->layers[0].alpha_x.value[channel]);
+    lobes[0] = lobe_of(top->energy, lq_sine(mu), b->stack->layers[0].alpha_x.value[channel]);
     if (last > 0)
-        lobes[last] = lobe_of(inner->energy, sine_of(mu), lq_spread_alpha(&b->spread, m, inner->across));
+        lobes[last] = lobe_of(inner->energy, lq_sine(mu), lq_spread_alpha(&b->spread, m, inner->across));
     if (through > 0.0) {
         const double across = (one->energy * one->across + more->energy * more->across) / through;
         lobes[last + 1] = lobe_of(through, below, lq_spread_alpha(&spread, 0, across));

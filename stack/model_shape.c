@@ -16,8 +16,7 @@ static double least_alpha(const lq_shape_query *query) {
 }
 
 static double cosine_of(double sine) {
-    const double s = fmin(fmax(sine, 0.0), 1.0);
-    return sqrt((1.0 - s) * (1.0 + s));
+    return lq_sine(fmin(fmax(sine, 0.0), 1.0));
 }
 
 static lq_status make_lobe(lq_shape_lobe *lobe, const lq_model_lobe *from, const lq_shape_query *query,
@@ -33,8 +32,10 @@ static lq_status make_lobe(lq_shape_lobe *lobe, const lq_model_lobe *from, const
     return status;
 }
 
-static lq_model_query query_of(const lq_shape_query *query, lq_model_id model) {
+static lq_model_query query_of(const lq_shape_query *query, lq_model_id model, const double *mu) {
     return (lq_model_query){.model = model,
+                            .mu = mu,
+                            .mu_count = 1,
                             .variant = query->variant,
                             .f = query->f,
                             .mapping = query->mapping,
@@ -43,11 +44,9 @@ static lq_model_query query_of(const lq_shape_query *query, lq_model_id model) {
 }
 
 static lq_status aim_lobes(lq_model_shape *shape, double mu, lq_error *error) {
-    lq_model_query query = query_of(&shape->query, shape->query.model);
+    const lq_model_query query = query_of(&shape->query, shape->query.model, &mu);
     const size_t all = shape->count * (size_t)shape->channels;
     lq_model_lobe *lobes = calloc(all, sizeof *lobes);
-    query.mu = &mu;
-    query.mu_count = 1;
     lq_status status = lobes ? lq_model_solve(shape->stack, &query, lobes, NULL, error)
                              : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", all);
     for (size_t i = 0; i < all && status == LQ_OK; i++) {
@@ -70,7 +69,7 @@ static double index_after(const lq_model_shape *shape, int channel, size_t k) {
 
 /* A cosine in the medium of that index as it is outside; beyond the critical angle along the horizon. */
 static double outside(double cosine, double index) {
-    return cosine_of(index * sqrt((1.0 - cosine) * (1.0 + cosine)));
+    return cosine_of(index * lq_sine(cosine));
 }
 
 static lq_status aim_grid(lq_model_shape *shape, double mu, lq_error *error) {
@@ -91,7 +90,7 @@ static lq_status aim_grid(lq_model_shape *shape, double mu, lq_error *error) {
 
 /* A lobe about the normal has no half vector with the light. */
 static lq_status make_grid(lq_model_shape *shape, lq_error *error) {
-    const lq_model_query query = query_of(&shape->query, LQ_MODEL_B18_FORWARD);
+    const lq_model_query query = query_of(&shape->query, LQ_MODEL_B18_FORWARD, NULL);
     const lq_stack *stack = shape->stack;
     if (stack->layers[stack->layer_count - 1].type == LQ_LAYER_LAMBERTIAN)
         return lq_fail(error, LQ_BAD_INPUT, "a lambertian base; accepted by %s: a conductor, or none",
@@ -127,11 +126,9 @@ static lq_status make_turned(lq_model_shape *shape, size_t i, const lq_turned_lo
 }
 
 static lq_status aim_turned(lq_model_shape *shape, double mu, lq_error *error) {
-    lq_model_query query = query_of(&shape->query, shape->query.model);
+    const lq_model_query query = query_of(&shape->query, shape->query.model, &mu);
     const size_t all = shape->count * (size_t)shape->channels;
     lq_turned_lobe *lobes = calloc(all, sizeof *lobes);
-    query.mu = &mu;
-    query.mu_count = 1;
     lq_status status = lobes ? lq_model_y19(shape->stack, &query, shape->query.azimuth, lobes, error)
                              : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu lobes", all);
     for (size_t i = 0; i < all && status == LQ_OK; i++) status = make_turned(shape, i, &lobes[i], error);

@@ -34,10 +34,15 @@ lq_status lq_input_open(FILE **in, const char *path, size_t largest, lq_error *e
 }
 
 lq_status lq_input_read(const char *path, char **bytes, size_t *size, lq_error *error) {
+    return lq_input_read_within(path, SIZE_MAX / 2, bytes, size, error);
+}
+
+lq_status lq_input_read_within(const char *path, size_t largest, char **bytes, size_t *size,
+                               lq_error *error) {
     struct stat there;
     FILE *in;
     *bytes = NULL;
-    lq_status status = lq_input_open(&in, path, SIZE_MAX / 2, error);
+    lq_status status = lq_input_open(&in, path, largest, error);
     if (status != LQ_OK) return status;
     if (fstat(fileno(in), &there) != 0) status = lq_fail(error, LQ_IO, "cannot read %s: %m", path);
     if (status == LQ_OK) {

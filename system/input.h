@@ -10,7 +10,9 @@
  * (which is not waited for), a larger file. */
 lq_status lq_input_open(FILE **in, const char *path, size_t largest, lq_error *error);
 
-/* All bytes of a regular file, with a zero byte behind them; free them. LQ_IO otherwise. */
+/* All bytes of such a file, with a zero byte behind them; free them. LQ_IO otherwise. */
+lq_status lq_input_read_within(const char *path, size_t largest, char **bytes, size_t *size, lq_error *error);
+/* Of any size. */
 lq_status lq_input_read(const char *path, char **bytes, size_t *size, lq_error *error);
 
 #endif

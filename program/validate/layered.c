@@ -13,6 +13,7 @@
 #include "program/message.h"
 #include "program/validate/validate.h"
 #include "system/output.h"
+#include "system/status.h"
 #include "validate/layered.h"
 
 static const char *const places[] = {"/../share/lacquer/recipes/layered", "/../../recipes/layered"};
@@ -44,20 +45,18 @@ static lq_status open_set(layered_job *job, lq_error *error) {
         snprintf(path, sizeof path, "%s/%.60s.json", folder, named);
         if (access(path, R_OK) == 0) return lq_layered_set_read(&job->set, path, error);
     }
-    snprintf(error->text, sizeof error->text,
-             "no set '%.60s'; accepted: ba19, b18, d22, or a JSON file (with a . or / in its name)", named);
-    return LQ_BAD_INPUT;
+    return lq_fail(error, LQ_BAD_INPUT,
+                   "no set '%.60s'; accepted: ba19, b18, d22, or a JSON file (with a . or / in its name)",
+                   named);
 }
 
 static lq_status add_model(layered_job *job, const char *label, lq_error *error) {
     if (job->asked.model_count == LQ_LAYERED_MODELS) {
-        snprintf(error->text, sizeof error->text, "--model: more than %d models", LQ_LAYERED_MODELS);
-        return LQ_BAD_INPUT;
+        return lq_fail(error, LQ_BAD_INPUT, "--model: more than %d models", LQ_LAYERED_MODELS);
     }
     for (size_t i = 0; i < job->asked.model_count; i++)
         if (strcmp(job->models[i].label, label) == 0) {
-            snprintf(error->text, sizeof error->text, "--model: '%.40s' twice", label);
-            return LQ_BAD_INPUT;
+            return lq_fail(error, LQ_BAD_INPUT, "--model: '%.40s' twice", label);
         }
     const lq_status status = lq_layered_model_parse(&job->models[job->asked.model_count], label, error);
     job->asked.model_count += status == LQ_OK;
@@ -86,17 +85,15 @@ static lq_status open_tables(layered_job *job, lq_error *error) {
     bool wanted = false;
     for (size_t i = 0; i < job->asked.model_count; i++) wanted |= job->models[i].tables;
     if (wanted != (folder != NULL)) {
-        snprintf(error->text, sizeof error->text, "%s",
-                 folder ? "--tables has no effect where no model is named with +tables"
-                        : "--model: '+tables' of which pack? accepted: with --tables DIR");
-        return LQ_BAD_INPUT;
+        return lq_fail(error, LQ_BAD_INPUT, "%s",
+                       folder ? "--tables has no effect where no model is named with +tables"
+                              : "--model: '+tables' of which pack? accepted: with --tables DIR");
     }
     if (!folder) return LQ_OK;
     const lq_status status = lq_pack_read(&job->pack, folder, error);
     if (status != LQ_OK) return status;
     if (!lq_contents_checksum(folder, "manifest.json", job->source_sum)) {
-        snprintf(error->text, sizeof error->text, "%.300s: its manifest cannot be read", folder);
-        return LQ_IO;
+        return lq_fail(error, LQ_IO, "%.300s: its manifest cannot be read", folder);
     }
     job->source = lq_pack_source(&job->pack);
     job->asked.source = &job->source;
@@ -110,8 +107,7 @@ static lq_status open_folders(const layered_job *job, lq_error *error) {
     lq_status status = LQ_OK;
     for (int i = 0; i < 3 && status == LQ_OK; i++) {
         if (snprintf(path, sizeof path, "%s%s", job->asked.folder, below[i]) >= 4000) {
-            snprintf(error->text, sizeof error->text, "the name of the report's folder is too long");
-            return LQ_BAD_INPUT;
+            return lq_fail(error, LQ_BAD_INPUT, "the name of the report's folder is too long");
         }
         status = lq_output_folder(path, error);
     }
@@ -127,9 +123,8 @@ static lq_status prepare(layered_job *job, lq_error *error) {
                                       .threads = (int)request->threads,
                                       .folder = request->certify.report};
     if (!request->certify.report) {
-        snprintf(error->text, sizeof error->text,
-                 "no folder; usage: lacquer validate layered --report DIR [--set SET]");
-        return LQ_BAD_INPUT;
+        return lq_fail(error, LQ_BAD_INPUT,
+                       "no folder; usage: lacquer validate layered --report DIR [--set SET]");
     }
     lq_status status = open_set(job, error);
     if (status == LQ_OK) status = open_models(job, error);
@@ -173,8 +168,7 @@ static lq_status keep(const layered_job *job, const lq_layered_stack *stack, jso
     *figures = NULL;
     name_of(job, stack, path, sizeof path);
     if (!text) {
-        snprintf(error->text, sizeof error->text, "out of memory");
-        return LQ_NO_MEMORY;
+        return lq_fail(error, LQ_NO_MEMORY, "out of memory");
     }
     lq_status status = lq_output_save(path, text, strlen(text), error);
     if (status == LQ_OK) status = lq_json_parse(figures, path, text, strlen(text), error);
