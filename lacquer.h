@@ -45,6 +45,20 @@ typedef struct lq_progress {
     void *user;
 } lq_progress;
 
+/* Watching a call that takes several steps. Any function may be NULL. All are called on the thread that made
+ * the call, but `report`, which comes from one thread at a time. */
+typedef struct lq_watch {
+    size_t struct_size;                          /* sizeof(lq_watch) */
+    void (*begin)(void *user, const char *step); /* a step begins: "fgd, check"; `report` is about it */
+    bool (*report)(void *user, double fraction); /* as in lq_progress */
+    void (*end)(void *user);                     /* the step ended */
+    void (*note)(void *user, const char *line);  /* what costs time, not the result: no cache */
+    void (*hold)(void *user, bool held);         /* from true to false: ending the process here would leave
+                                                  * a temporary folder behind */
+    bool (*go_on)(void *user);                   /* asked between steps; false cancels */
+    void *user;                                  /* handed to each */
+} lq_watch;
+
 /* ======================================================================================
  *                                         Axes
  * ====================================================================================== */
@@ -527,6 +541,60 @@ typedef struct lq_pca_try {
 lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options *start,
                         const lq_pca_goal *goal, const lq_progress *progress, lq_factored **factored,
                         lq_pca_try **tries, size_t *try_count, lq_error *error);
+
+/* ======================================================================================
+ *                                         Packs
+ * ======================================================================================
+ *
+ * A folder of textures, decode source in shading languages, published binaries and a manifest that says how
+ * each was made and how far it is off: what an engine loads (docs/packs.md).
+ */
+
+typedef struct lq_pack_options {
+    size_t struct_size;    /* sizeof(lq_pack_options); lq_pack_options_default sets it */
+    const char *cache;     /* a folder of tables computed before, made where it is missing; NULL: none */
+    lq_trust trust;        /* NDF files and plugins that the recipe may name; by default none */
+    int threads;           /* 0: one per core. The files do not depend on it. */
+    const lq_watch *watch; /* NULL: nobody */
+} lq_pack_options;
+
+lq_pack_options lq_pack_options_default(void);
+
+/* What one table or material came to. Errors are those of what a GPU decodes, from halves and filter weights
+ * of 8 fractional bits, against exact values at points off the grid, from mu, alpha and tau of 0.02 up. */
+typedef struct lq_pack_entry {
+    char name[LQ_NAME_SIZE];
+    bool material;                 /* of a scene; otherwise a table */
+    int line;                      /* in the recipe */
+    size_t bytes;                  /* of its textures, as a GPU holds them */
+    size_t points;                 /* where it was measured */
+    bool relative;                 /* errors are relative (mappings); otherwise absolute */
+    double rms, p99, max;          /* over all points and channels */
+    double budget_p99, budget_max; /* what the recipe asks; INFINITY: nothing */
+    char refine[LQ_NAME_SIZE]; /* the axis whose texels bend most where the error is largest; "": not known */
+} lq_pack_entry;
+
+typedef struct lq_pack_report lq_pack_report;
+
+/* Make the pack of a recipe's file: everything is computed or found in the cache, measured, and put into
+ * `folder`, which is new, empty, or an older pack with nothing changed, and which appears whole or stays as
+ * it was. `options` NULL: the defaults. `report` (may be NULL) gets what it came to wherever that is known,
+ * the tables of the recipe first, then its materials; free it. LQ_NOT_CONVERGED: a budget is missed, which
+ * the message names, and nothing was written. LQ_BAD_INPUT, LQ_FORMAT: "FILE:LINE: what; accepted: ...".
+ * LQ_IO: the folder is somebody's, or cannot be written. LQ_CANCELLED: by the watch. */
+lq_status lq_pack_make(const char *recipe, const char *folder, const lq_pack_options *options,
+                       lq_pack_report **report, lq_error *error);
+
+size_t lq_pack_report_count(const lq_pack_report *report);
+const lq_pack_entry *lq_pack_report_entry(const lq_pack_report *report, size_t i); /* NULL beyond the last */
+/* Of all textures as a GPU holds them, the borders of an atlas included. `atlas` (may be NULL): whether they
+ * are in one. */
+size_t lq_pack_report_bytes(const lq_pack_report *report, bool *atlas);
+void lq_pack_report_free(lq_pack_report *report); /* NULL: nothing */
+
+/* The cache of `lacquer pack`: lacquer in XDG_CACHE_HOME or ~/.cache. False: neither is set, or it does not
+ * fit into `size` bytes. */
+bool lq_cache_default(char *folder, size_t size);
 
 /* ======================================================================================
  *                                        Stacks

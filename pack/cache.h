@@ -4,9 +4,6 @@
 
 #include "lacquer.h"
 
-/* The folder to use when none is named: lacquer in XDG_CACHE_HOME or ~/.cache. False: neither is set. */
-bool lq_cache_default(char *folder, size_t size);
-
 /* Whether the entries of `folder` are safe from other users: it is absent, the user's own, or sticky. LQ_IO
  * names it. */
 lq_status lq_cache_check(const char *folder, lq_error *error);

@@ -1,12 +1,12 @@
 /* pca.c - lq_pca: a table into factors, piece by piece. */
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pca/factors.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
+#include "system/parallel.h"
 #include "system/status.h"
 
 lq_pca_options lq_pca_options_default(void) {
@@ -217,13 +217,6 @@ static lq_status add_piece(const lq_table *table, int channel, const lq_pca_opti
                          error);
 }
 
-/* The number of threads of OpenMP loops belongs to the calling thread, not to the process. */
-int lq_pca_threads(int threads) {
-    const int before = omp_get_max_threads();
-    if (threads > 0) omp_set_num_threads(threads);
-    return before;
-}
-
 lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *options,
                  const lq_progress *progress, lq_factored **factored, lq_error *error) {
     lq_pca_options o;
@@ -232,10 +225,10 @@ lq_status lq_pca(const lq_table *table, int channel, const lq_pca_options *optio
     if (status == LQ_OK) status = lq_pca_check_options(table, &o, error);
     if (status == LQ_OK) status = lq_pca_check_table(table, channel, error);
     if (status == LQ_OK) status = lq_factored_start(table, channel, factored, error);
-    const int before = lq_pca_threads(o.threads);
+    const int before = lq_threads_set(o.threads);
     for (int p = 0; status == LQ_OK && p <= o.split_count; p++)
         status = add_piece(table, channel, &o, progress, *factored, error);
-    lq_pca_threads(before);
+    lq_threads_set(before);
     if (status == LQ_OK) status = lq_factored_check(*factored, error);
     if (status == LQ_OK) return LQ_OK;
     lq_factored_free(*factored);

@@ -28,9 +28,6 @@ lq_status lq_pca_options_read(lq_pca_options *options, const lq_pca_options *giv
 /* The number of the first bases of the joint scheme that `options` asks for. */
 size_t lq_separated_bases(const lq_pca_options *options);
 
-/* Use so many threads in loops that the calling thread starts (0: as it is); returns how many it used. */
-int lq_pca_threads(int threads);
-
 /* An empty factored table over the table's axes, with its facts. */
 lq_status lq_factored_start(const lq_table *table, int channel, lq_factored **factored, lq_error *error);
 

@@ -15,6 +15,7 @@
 #include "pca/measure.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
+#include "system/parallel.h"
 #include "system/status.h"
 
 enum {
@@ -320,14 +321,14 @@ lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options
     const int pieces = s.status == LQ_OK ? o.split_count + 1 : 1;
     each.bytes /= (size_t)pieces;
     if (s.status == LQ_OK) s.status = lq_factored_start(table, channel, factored, error);
-    const int before = lq_pca_threads(o.threads);
+    const int before = lq_threads_set(o.threads);
     for (s.piece = 0; s.piece < pieces && s.status == LQ_OK; s.piece++) {
         s.share = 1.0 / pieces;
         s.done = (double)s.piece / pieces;
         search_piece(&s, &o, &(*factored)->pieces[s.piece], &met);
         if (s.status == LQ_OK) (*factored)->piece_count++;
     }
-    lq_pca_threads(before);
+    lq_threads_set(before);
     *tries = s.tries;
     *try_count = s.try_count;
     if (s.status == LQ_OK && met) return LQ_OK;

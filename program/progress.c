@@ -107,3 +107,41 @@ void cli_progress_end(cli_progress *bar) {
     if (bar->shown > 0) fputs(ERASE_LINE, stderr);
     bar_on_screen = 0;
 }
+
+static void begin_step(void *user, const char *step) {
+    cli_watch *w = user;
+    snprintf(w->label, sizeof w->label, "%s", step);
+    cli_progress_begin(&w->bar, w->label);
+}
+
+static bool report_step(void *user, double fraction) {
+    cli_watch *w = user;
+    return report(&w->bar, fraction);
+}
+
+static void end_step(void *user) {
+    cli_watch *w = user;
+    cli_progress_end(&w->bar);
+}
+
+static void print_note(void *user, const char *line) {
+    (void)user;
+    cli_message("%s", line);
+}
+
+static void hold(void *user, bool held) {
+    (void)user;
+    if (held) cli_signals_hold();
+    else cli_signals_release();
+}
+
+static bool go_on(void *user) {
+    (void)user;
+    return !interrupted;
+}
+
+const lq_watch *cli_watch_start(cli_watch *watch) {
+    *watch = (cli_watch){
+        .watch = {sizeof(lq_watch), begin_step, report_step, end_step, print_note, hold, go_on, watch}};
+    return &watch->watch;
+}

@@ -26,6 +26,16 @@ typedef struct cli_progress {
 void cli_progress_begin(cli_progress *bar, const char *label);
 void cli_progress_end(cli_progress *bar);
 
+/* The same for a call of several steps, each with a bar of its own; signals also wait where the call would
+ * leave something behind, and its notes are printed. */
+typedef struct cli_watch {
+    lq_watch watch;
+    cli_progress bar;
+    char label[LQ_MESSAGE_SIZE];
+} cli_watch;
+
+const lq_watch *cli_watch_start(cli_watch *watch);
+
 /* For main: from here on SIGINT and SIGTERM do as described above. */
 void cli_catch_signals(void);
 

@@ -66,3 +66,9 @@ lq_status lq_parallel(size_t count, int threads, lq_turn *turn, void *user, cons
     if (l.cancelled) return lq_fail(error, LQ_CANCELLED, "stopped");
     return l.missed ? LQ_NOT_CONVERGED : LQ_OK;
 }
+
+int lq_threads_set(int threads) {
+    const int before = omp_get_max_threads();
+    if (threads > 0) omp_set_num_threads(threads);
+    return before;
+}

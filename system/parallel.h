@@ -20,4 +20,8 @@ int lq_parallel_threads(size_t count, int threads);
 lq_status lq_parallel(size_t count, int threads, lq_turn *turn, void *user, const lq_progress *progress,
                       lq_error *error);
 
+/* What loops of the calling thread that are given 0 threads run on, from here on; 0: as before. Returns what
+ * it was, to be set again. The number belongs to that thread, not to the process. */
+int lq_threads_set(int threads);
+
 #endif

@@ -1,13 +1,12 @@
-/* make.c - the tables of a pack: computed or found in the cache, factored, measured. */
+/* make_table.c - the tables of a pack: computed or found in the cache, factored, measured. */
 #include "pack/cache.h"
 #include "pack/fit_texels.h"
+#include "pack/make.h"
 #include "pack/mapping.h"
 #include "pca/factors.h"
 #include "pca/measure.h"
-#include "program/message.h"
-#include "program/pack/pack.h"
-#include "program/progress.h"
 #include "system/draft.h"
+#include "system/status.h"
 #include "tables/facts.h"
 
 #include <stdio.h>
@@ -17,7 +16,7 @@
 /* ------------------------------------------------------------------------- tables and their checks */
 
 /* All that determines a table: the program, the kind, the settings and every node. NULL: out of memory. */
-static char *write_key(const pack_request *r, const lq_recipe_table *t, const char *what) {
+static char *write_key(const lq_making *r, const lq_recipe_table *t, const char *what) {
     lq_draft draft = {.text = NULL};
     FILE *out = lq_draft_open(&draft);
     if (!out) return NULL;
@@ -42,39 +41,41 @@ static bool on_grid(const lq_recipe_table *t) {
     return t->factored || (t->kind->interface && strcmp(t->kind->interface, "dielectric") == 0);
 }
 
-static lq_status compute(const lq_recipe_table *t, const want *w, const lq_settings *settings,
-                         lq_table **table, lq_error *error) {
-    cli_progress bar;
+static lq_status compute(const lq_making *r, const lq_recipe_table *t, const want *w,
+                         const lq_settings *settings, lq_table **table, lq_error *error) {
+    lq_step step;
     char label[64];
     snprintf(label, sizeof label, w->what ? "%s, %s" : "%s", t->name, w->what);
-    cli_progress_begin(&bar, label);
+    lq_step_begin(&step, &r->watch, label);
     const bool mapping = lq_is_mapping(t->kind);
     lq_status status =
         mapping && !w->points ? lq_mapping_table(t->kind, settings, t->axes, table, error)
         : mapping             ? lq_mapping_exact(t->kind, settings, t->axes, w->points, table, error)
-        : !w->points          ? lq_precompute(t->kind, settings, t->axes, &bar.progress, table, error)
-        : on_grid(t) ? lq_measure_exact_grid(t->kind, settings, t->axes, w->points, w->seed, &bar.progress,
+        : !w->points          ? lq_precompute(t->kind, settings, t->axes, &step.progress, table, error)
+        : on_grid(t) ? lq_measure_exact_grid(t->kind, settings, t->axes, w->points, w->seed, &step.progress,
                                              table, error)
-                     : lq_measure_exact(t->kind, settings, t->axes, w->points, &bar.progress, table, error);
-    cli_progress_end(&bar);
+                     : lq_measure_exact(t->kind, settings, t->axes, w->points, &step.progress, table, error);
+    lq_step_end(&step);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
 }
 
-/* Storing makes a folder of its own: a signal waits until that is gone. */
-static lq_status store(const pack_request *r, const char *key, lq_table *table, lq_factored *factored,
+/* Storing makes a folder of its own: who ends the process waits until that is gone. */
+static lq_status store(const lq_making *r, const char *key, lq_table *table, lq_factored *factored,
                        lq_error *error) {
-    cli_signals_hold();
+    lq_watch_hold(&r->watch, true);
     lq_status status = table ? lq_cache_store(r->cache, key, table, error)
                              : lq_cache_store_factored(r->cache, key, factored, error);
-    cli_signals_release();
-    if (status == LQ_OK && cli_interrupted()) status = LQ_CANCELLED;
+    lq_watch_hold(&r->watch, false);
+    if (status == LQ_OK) status = lq_watch_go_on(&r->watch);
     return status;
 }
 
 /* A cache that cannot be written costs time, not the pack: said once. */
-static lq_status go_without(pack_request *r, lq_status status, const lq_error *error) {
+static lq_status go_without(lq_making *r, lq_status status, const lq_error *error) {
     if (status != LQ_IO) return status;
-    cli_message("%s; going on without", error->text);
+    char line[LQ_MESSAGE_SIZE + 32];
+    snprintf(line, sizeof line, "%s; going on without", error->text);
+    lq_watch_note(&r->watch, line);
     *r->cache = '\0';
     return LQ_OK;
 }
@@ -89,7 +90,7 @@ static lq_status axes_of(const lq_recipe_table *t, const want *w, lq_axis *axes,
 }
 
 /* In the cache; NULL: it is not there. */
-static lq_table *find(const pack_request *r, const char *key, const lq_recipe_table *t, const want *w) {
+static lq_table *find(const lq_making *r, const char *key, const lq_recipe_table *t, const want *w) {
     lq_axis axes[LQ_MAX_AXES] = {0};
     int count;
     if (!w->points) return lq_cache_find(r->cache, key, t->axes, t->kind->axis_count);
@@ -100,20 +101,20 @@ static lq_table *find(const pack_request *r, const char *key, const lq_recipe_ta
 }
 
 /* From the cache, or computed and put there. */
-static lq_status obtain(pack_request *r, const lq_recipe_table *t, const want *w, lq_table **table,
+static lq_status obtain(lq_making *r, const lq_recipe_table *t, const want *w, lq_table **table,
                         lq_error *error) {
     char what[64];
     if (!w->points) snprintf(what, sizeof what, "table");
     else if (on_grid(t)) snprintf(what, sizeof what, "grid-%zu-%zu", w->points, w->seed);
     else snprintf(what, sizeof what, "points-%zu", w->points);
     char *key = write_key(r, t, what);
-    if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
+    if (!key) return lq_fail(error, LQ_NO_MEMORY, "out of memory");
     lq_settings settings = t->settings;
-    settings.threads = (int)r->threads;
+    settings.threads = r->threads;
     lq_status status = LQ_OK;
     *table = *r->cache ? find(r, key, t, w) : NULL;
     if (!*table) {
-        status = compute(t, w, &settings, table, error);
+        status = compute(r, t, w, &settings, table, error);
         if (status == LQ_OK && *r->cache) status = go_without(r, store(r, key, *table, NULL, error), error);
     }
     free(key);
@@ -133,7 +134,7 @@ static lq_status search_values(void *user, const double *min, const double *max,
     return lq_nodes_within(user, min, max, values, error);
 }
 
-static lq_status factor(pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status factor(lq_making *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const bool searches = t->pca_budget > 0.0 || t->pca_bytes > 0;
     const want search = {"search", t->points, SEARCH_SEED};
@@ -141,17 +142,17 @@ static lq_status factor(pack_request *r, lq_packed *packed, lq_error *error) {
     lq_table *exact = NULL;
     lq_pca_try *tries = NULL;
     size_t count = 0;
-    cli_progress bar;
+    lq_step step;
     char label[64];
     lq_status status = searches ? obtain(r, t, &search, &exact, error) : LQ_OK;
     if (status != LQ_OK) return status;
     goal.user = exact;
     snprintf(label, sizeof label, "%s, pca", t->name);
-    cli_progress_begin(&bar, label);
-    status = searches ? lq_pca_search(packed->table, t->channel, &t->pca, &goal, &bar.progress,
+    lq_step_begin(&step, &r->watch, label);
+    status = searches ? lq_pca_search(packed->table, t->channel, &t->pca, &goal, &step.progress,
                                       &packed->factored, &tries, &count, error)
-                      : lq_pca(packed->table, t->channel, &t->pca, &bar.progress, &packed->factored, error);
-    cli_progress_end(&bar);
+                      : lq_pca(packed->table, t->channel, &t->pca, &step.progress, &packed->factored, error);
+    lq_step_end(&step);
     free(tries);
     lq_table_free(exact);
     if (status == LQ_NOT_CONVERGED) status = LQ_OK; /* the measured error says so */
@@ -159,7 +160,7 @@ static lq_status factor(pack_request *r, lq_packed *packed, lq_error *error) {
 }
 
 /* The factors, and the table where they or a binary need it. */
-static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status obtain_factors(lq_making *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0};
     char what[LQ_PCA_TEXT + 64];
@@ -167,7 +168,7 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
     lq_status status = LQ_OK;
     snprintf(what, sizeof what, "factors-%zu %s", t->points, t->pca_text);
     char *key = write_key(r, t, what);
-    if (!key) return snprintf(error->text, sizeof error->text, "out of memory"), LQ_NO_MEMORY;
+    if (!key) return lq_fail(error, LQ_NO_MEMORY, "out of memory");
     for (int l = 0; l < LQ_LAYOUTS; l++) binary = binary || t->layouts[l];
     packed->factored = *r->cache ? lq_cache_find_factored(r->cache, key, t->axes, t->kind->axis_count) : NULL;
     if (!packed->factored || binary) status = obtain(r, t, &whole, &packed->table, error);
@@ -184,7 +185,7 @@ static lq_status obtain_factors(pack_request *r, lq_packed *packed, lq_error *er
 
 /* Texels that are fitted to what lies between the table's nodes, too; a fact says how far they are from them.
  */
-static lq_status fit(pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status fit(lq_making *r, lq_packed *packed, lq_error *error) {
     const int axes = packed->from->kind->axis_count;
     lq_recipe_table finer = *packed->from;
     const want whole = {0};
@@ -200,7 +201,7 @@ static lq_status fit(pack_request *r, lq_packed *packed, lq_error *error) {
     return status;
 }
 
-static lq_status make_texture(pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status make_texture(lq_making *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want whole = {0}, check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
@@ -215,7 +216,7 @@ static lq_status make_texture(pack_request *r, lq_packed *packed, lq_error *erro
     return status;
 }
 
-static lq_status make_factors(pack_request *r, lq_packed *packed, lq_error *error) {
+static lq_status make_factors(lq_making *r, lq_packed *packed, lq_error *error) {
     const lq_recipe_table *t = packed->from;
     const want check = {"check", t->points, CHECK_SEED};
     lq_table *exact = NULL;
@@ -229,6 +230,6 @@ static lq_status make_factors(pack_request *r, lq_packed *packed, lq_error *erro
     return status;
 }
 
-lq_status pack_make(pack_request *r, lq_packed *packed, lq_error *error) {
+lq_status lq_make_table(lq_making *r, lq_packed *packed, lq_error *error) {
     return packed->from->factored ? make_factors(r, packed, error) : make_texture(r, packed, error);
 }

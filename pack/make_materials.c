@@ -1,7 +1,6 @@
-/* materials.c - the materials of a scene: baked from the exact stack, made into texels, measured. */
+/* make_materials.c - the materials of a scene: baked from the exact stack, made into texels, measured. */
+#include "pack/make.h"
 #include "pack/names.h"
-#include "program/pack/pack.h"
-#include "program/progress.h"
 #include "system/parallel.h"
 #include "system/status.h"
 
@@ -25,7 +24,7 @@ static lq_lobes_budget budget_of(const lq_recipe *recipe) {
 
 /* Materials on their way: baked once, fitted and checked until they keep their budget. */
 typedef struct fitting {
-    const pack_request *request;
+    const lq_making *making;
     lq_packing *packing;
     lq_baked *baked;
     lq_lobes_budget budget;
@@ -63,12 +62,11 @@ static lq_status solve_exact(fitting *f, const lq_material *const *materials, lq
     const lq_recipe *recipe = f->packing->recipe;
     const size_t asked = recipe->points / POINTS_PER_SET;
     const size_t sets = asked < FEWEST_SETS ? FEWEST_SETS : asked > MOST_SETS ? MOST_SETS : asked;
-    cli_progress bar;
-    cli_progress_begin(&bar, "materials, check");
-    const lq_status status =
-        lq_lobes_exact_make(&f->exact, materials, recipe->material_count, sets, CHECK_LEVEL, 0.0,
-                            (int)f->request->threads, &bar.progress, error);
-    cli_progress_end(&bar);
+    lq_step step;
+    lq_step_begin(&step, &f->making->watch, "materials, check");
+    const lq_status status = lq_lobes_exact_make(&f->exact, materials, recipe->material_count, sets,
+                                                 CHECK_LEVEL, 0.0, f->making->threads, &step.progress, error);
+    lq_step_end(&step);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* some interface took no finer level */
 }
 
@@ -86,7 +84,7 @@ static bool is_left(const fitting *f) {
 
 static lq_status fit_all(fitting *f, lq_error *error) {
     const size_t count = f->packing->recipe->material_count;
-    const int threads = (int)f->request->threads;
+    const int threads = f->making->threads;
     lq_status status = LQ_OK;
     for (size_t i = 0; i < count; i++) f->share[i] = 1.0;
     for (int attempt = 0; attempt < ATTEMPTS && is_left(f) && status == LQ_OK; attempt++) {
@@ -97,25 +95,25 @@ static lq_status fit_all(fitting *f, lq_error *error) {
     return status; /* what is left misses its budget: the measured error says so */
 }
 
-static lq_status bake(const pack_request *r, const lq_recipe *recipe, const lq_lobes_budget *budget,
+static lq_status bake(const lq_making *r, const lq_recipe *recipe, const lq_lobes_budget *budget,
                       const lq_material *const *materials, lq_baked *baked, lq_error *error) {
     double mu[LQ_LOBES_COSINES];
-    cli_progress bar;
+    lq_step step;
     lq_lobes_cosines(mu);
-    cli_progress_begin(&bar, "materials");
+    lq_step_begin(&step, &r->watch, "materials");
     const lq_status status =
         lq_bake(materials, recipe->material_count, mu, LQ_LOBES_COSINES,
-                BAKED * fmin(budget->p99, budget->max), (int)r->threads, &bar.progress, baked, error);
-    cli_progress_end(&bar);
+                BAKED * fmin(budget->p99, budget->max), r->threads, &step.progress, baked, error);
+    lq_step_end(&step);
     return status == LQ_NOT_CONVERGED ? LQ_OK : status; /* the measured error says what it comes to */
 }
 
-lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
+lq_status lq_make_materials(const lq_making *r, lq_packing *packing, lq_error *error) {
     const lq_recipe *recipe = packing->recipe;
     const size_t count = recipe->material_count;
     const lq_material **materials = calloc(count, sizeof *materials);
     lq_baked *baked = calloc(count, sizeof *baked);
-    fitting f = {.request = r, .packing = packing, .baked = baked, .budget = budget_of(recipe)};
+    fitting f = {.making = r, .packing = packing, .baked = baked, .budget = budget_of(recipe)};
     f.share = calloc(count, sizeof *f.share);
     lq_status status = materials && baked && f.share ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "out of memory");
     for (size_t i = 0; i < count && status == LQ_OK; i++) {
@@ -126,7 +124,7 @@ lq_status pack_bake(pack_request *r, lq_packing *packing, lq_error *error) {
     if (status == LQ_OK) status = bake(r, recipe, &f.budget, materials, baked, error);
     if (status == LQ_OK) status = solve_exact(&f, materials, error);
     if (status == LQ_OK) status = fit_all(&f, error);
-    if (status == LQ_OK) status = lq_parallel(count, (int)r->threads, refer, &f, NULL, error);
+    if (status == LQ_OK) status = lq_parallel(count, r->threads, refer, &f, NULL, error);
     for (size_t i = 0; baked && i < count; i++) lq_baked_free(&baked[i]);
     free(materials);
     free(baked);
