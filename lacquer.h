@@ -592,6 +592,47 @@ const lq_pack_entry *lq_pack_report_entry(const lq_pack_report *report, size_t i
 size_t lq_pack_report_bytes(const lq_pack_report *report, bool *atlas);
 void lq_pack_report_free(lq_pack_report *report); /* NULL: nothing */
 
+/* ---- What a pack decodes to ---- */
+
+/* A pack, read back: the manifest and the texels of its files. */
+typedef struct lq_pack lq_pack;
+
+/* Whether a folder holds a manifest. */
+bool lq_pack_found(const char *folder);
+
+/* Every file of texels is read and compared with the others. LQ_FORMAT names one that is missing or not what
+ * the manifest says, LQ_IO one that cannot be read. */
+lq_status lq_pack_open(lq_pack **pack, const char *folder, lq_error *error);
+void lq_pack_close(lq_pack *pack); /* NULL: nothing */
+
+enum { LQ_PACK_VALUES = 12 };
+
+typedef struct lq_pack_axis {
+    const char *name;
+    double min, max; /* what the function takes; beyond, it takes the end */
+} lq_pack_axis;
+
+/* A function of the decode source, of a table or of a material. */
+typedef struct lq_pack_function {
+    const char *name;    /* "car-paint"; the source calls it lacquer_car_paint */
+    const lq_kind *kind; /* NULL: a material */
+    int axis_count;
+    lq_pack_axis axes[LQ_MAX_AXES];
+    int value_count;
+    const char *values[LQ_PACK_VALUES]; /* channels of the table; of a material the colours and the roughness
+                                         * of three lobes: "top.r" ... "base_alpha" */
+} lq_pack_function;
+
+/* Tables in the order of the recipe, then materials. All belong to the pack. */
+size_t lq_pack_function_count(const lq_pack *pack);
+const lq_pack_function *lq_pack_function_at(const lq_pack *pack, size_t i); /* NULL beyond the last */
+/* By its name, or that of its source. LQ_BAD_INPUT lists those there are. */
+lq_status lq_pack_find(const lq_pack *pack, const char *name, size_t *function, lq_error *error);
+
+/* What function `function` returns at a point, one coordinate an axis, on a GPU: halves, and filter weights
+ * of 8 fractional bits. */
+void lq_pack_decode(const lq_pack *pack, size_t function, const double *point, double *values);
+
 /* The cache of `lacquer pack`: lacquer in XDG_CACHE_HOME or ~/.cache. False: neither is set, or it does not
  * fit into `size` bytes. */
 bool lq_cache_default(char *folder, size_t size);

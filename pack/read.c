@@ -430,5 +430,7 @@ void lq_pack_free(lq_pack *pack) {
     free(pack->tables);
     free(pack->materials);
     json_decref(pack->manifest);
+    free(pack->folder);
+    free(pack->functions);
     *pack = (lq_pack){.count = 0};
 }

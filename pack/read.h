@@ -32,7 +32,7 @@ typedef struct lq_shipped_material {
     lq_lobes lobes; /* p99 and max: its budget; INFINITY: none */
 } lq_shipped_material;
 
-typedef struct lq_pack {
+struct lq_pack {
     char name[LQ_NAME_SIZE];
     size_t count;
     lq_shipped *tables;
@@ -40,10 +40,10 @@ typedef struct lq_pack {
     lq_shipped_material *materials;
     lq_shipped atlas; /* its image, where textures are in one; and what its files are like */
     json_t *manifest; /* what it says of itself besides: what was measured, the source it has */
-} lq_pack;
-
-/* Whether a folder holds a manifest. */
-bool lq_pack_found(const char *folder);
+    /* Of lq_pack_open: */
+    char *folder;
+    lq_pack_function *functions; /* those of the tables, then of the materials */
+};
 
 /* Reads every container of every texture. The texels are those of the first listed file. LQ_FORMAT and the
  * file's name where one is missing or not what the manifest says. */

@@ -2,7 +2,7 @@
 #ifndef LACQUER_PROGRAM_EVAL_EVAL_H
 #define LACQUER_PROGRAM_EVAL_EVAL_H
 
-#include "pack/read.h"
+#include "lacquer.h"
 
 #include <stdio.h>
 
@@ -15,19 +15,17 @@ typedef struct eval_axis {
     double lowest, highest; /* accepted, inclusive */
 } eval_axis;
 
-/* A material has three colours of three lobes, and a roughness of each. */
-enum { EVAL_CHANNELS = 12 };
+enum { EVAL_CHANNELS = LQ_PACK_VALUES };
 
 /* A table kind, computed exactly; or a stored table, interpolated; or factors, or a function of a pack, as a
  * GPU filters them. */
 typedef struct eval_source {
     const lq_kind *kind; /* NULL for a file */
     lq_settings settings;
-    lq_table *table; /* owned; one of these five */
+    lq_table *table; /* owned; one of these four */
     lq_factored *factored;
-    const lq_shipped *shipped; /* of the pack, which is owned */
-    const lq_shipped_material *material;
     lq_pack *pack;
+    size_t function; /* of the pack */
     const char *path;
     int axis_count;
     eval_axis axes[LQ_MAX_AXES];
@@ -63,9 +61,6 @@ bool eval_coordinate(const eval_source *source, eval_point *point, int axis, con
 eval_point eval_start(const eval_source *source);
 /* Whether every axis was given; if not, the message names the missing ones. */
 bool eval_complete(const eval_source *source, const eval_point *point, lq_error *error);
-
-/* The channels of a material at mu, its ranges and its albedo. */
-void eval_material(const lq_shipped_material *material, const double *at, double *values);
 
 void eval_compute(const eval_source *source, const lq_settings *settings, const eval_point *point,
                   eval_result *result);

@@ -1,8 +1,6 @@
 /* source.c - points and their values for `lacquer eval`, from a kind or from a stored table. */
 #include "program/eval/eval.h"
 
-#include "pack/measure.h"
-
 #include "program/options.h"
 #include "system/status.h"
 
@@ -54,8 +52,7 @@ lq_status eval_source_file(eval_source *source, const char *path, lq_error *erro
 void eval_source_free(eval_source *source) {
     lq_table_free(source->table);
     lq_factored_free(source->factored);
-    if (source->pack) lq_pack_free(source->pack);
-    free(source->pack);
+    lq_pack_close(source->pack);
     source->pack = NULL;
     source->table = NULL;
     source->factored = NULL;
@@ -107,12 +104,6 @@ bool eval_complete(const eval_source *source, const eval_point *point, lq_error 
     return list[0] == '\0';
 }
 
-/* Of a texture, half floats and weights of 8 bits; of factors the same. */
-static void look_up(const lq_shipped *shipped, const double *at, double *values) {
-    if (shipped->factored) values[0] = lq_factored_lookup_gpu(shipped->factored, at);
-    else lq_texture_sample(&shipped->texture, at, LQ_FILTER_BITS, values);
-}
-
 void eval_compute(const eval_source *source, const lq_settings *settings, const eval_point *point,
                   eval_result *result) {
     *result = (eval_result){.status = LQ_OK};
@@ -121,12 +112,8 @@ void eval_compute(const eval_source *source, const lq_settings *settings, const 
             lq_eval(source->kind, settings, point->at, result->values, &result->estimate, &result->error);
         return;
     }
-    if (source->shipped) {
-        look_up(source->shipped, point->at, result->values);
-        return;
-    }
-    if (source->material) {
-        eval_material(source->material, point->at, result->values);
+    if (source->pack) {
+        lq_pack_decode(source->pack, source->function, point->at, result->values);
         return;
     }
     if (source->factored) {
