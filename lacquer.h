@@ -638,6 +638,80 @@ void lq_pack_decode(const lq_pack *pack, size_t function, const double *point, d
 bool lq_cache_default(char *folder, size_t size);
 
 /* ======================================================================================
+ *                                      Certificates
+ * ======================================================================================
+ *
+ * How far what a renderer decodes is from the exact solver, anywhere in a domain, and how sure that is
+ * (docs/certificates.md): points drawn between the nodes, a search from the worst of them, physics that
+ * values owe.
+ */
+
+typedef struct lq_certify_options {
+    size_t struct_size; /* sizeof(lq_certify_options); lq_certify_options_default sets it */
+    const char *budget; /* "max=1e-2,p99=2e-3,rms=...,mean=...", or one number, for max; NULL: none, or that
+                         * of a pack */
+    const char *budget_file; /* instead: a file of budgets by table; NULL: none */
+    const char *domain; /* "mu=0.02:1,tau=0.02:1": the part of the axes that counts; NULL: all of them, of a
+                         * pack what its manifest promises */
+    const char *table;  /* of a factor file: the table that it was made from, for the parts of its error */
+    bool parts;         /* of a pack: compute the tables of its factors anew, for the same */
+    size_t points;      /* at least; 0: 100000, or 1024 where every value is a solve of its own */
+    double tolerance;   /* of the exact values; 0: 1e-4, or a twentieth of the budget */
+    unsigned long long seed; /* of the points; 1 by default */
+    int threads;             /* 0: one per core. Results do not depend on it. */
+    lq_trust trust;          /* which recorded NDFs may be opened */
+    const lq_watch *watch;   /* NULL: nobody */
+} lq_certify_options;
+
+lq_certify_options lq_certify_options_default(void);
+
+typedef enum lq_outcome { LQ_PASSED, LQ_FAILED, LQ_NOTED /* measured, not judged */ } lq_outcome;
+
+/* One judgement. */
+typedef struct lq_check {
+    char name[40]; /* "budget max", "range decoded" */
+    lq_outcome outcome;
+    double value, limit; /* limit NAN: none */
+    char detail[240];    /* where, or how sure */
+} lq_check;
+
+/* Of one table, or of one material of a pack. */
+typedef struct lq_certificate {
+    const char *name;
+    const lq_kind *kind; /* NULL: a material */
+    bool passed;
+    size_t points;        /* exact values it rests on */
+    bool relative;        /* errors are relative (mappings); otherwise absolute */
+    double rms, p99, max; /* over all points and channels; max also over what the search found */
+    double p99_limit;     /* p99 of the domain is below, with 95 % confidence; INFINITY: not settled */
+    double estimate;      /* largest error estimate of the exact values; 0: of a material */
+    size_t check_count;
+    const lq_check *checks;  /* of a material: none, its budget alone decides */
+    const lq_check *failure; /* the first that failed, or NULL */
+} lq_certificate;
+
+typedef struct lq_certificates lq_certificates;
+
+/* Certify what is at `path`: a table or a factor file of this library, a folder of such files, or a pack.
+ * `options` NULL: the defaults. That something failed is no error: see lq_certificates_passed. LQ_BAD_INPUT:
+ * an option that is not understood, an NDF that is not trusted, a range that the kind has not. LQ_FORMAT,
+ * LQ_IO: a file that is not one of these, or cannot be read. LQ_CANCELLED: by the watch. */
+lq_status lq_certify(const char *path, const lq_certify_options *options, lq_certificates **certificates,
+                     lq_error *error);
+void lq_certificates_free(lq_certificates *certificates); /* NULL: nothing */
+
+size_t lq_certificates_count(const lq_certificates *certificates);
+/* Tables first, then materials; what it points to belongs to the list. False: beyond the last. */
+bool lq_certificates_get(const lq_certificates *certificates, size_t i, lq_certificate *certificate);
+bool lq_certificates_passed(const lq_certificates *certificates);
+
+/* Those of tables as JSON (free() the text), as JUnit XML with a test case a judgement, and as a web page,
+ * folder/index.html, which needs no other file. Files appear whole or not at all. */
+lq_status lq_certificates_json(const lq_certificates *certificates, char **text, lq_error *error);
+lq_status lq_certificates_junit(const lq_certificates *certificates, const char *path, lq_error *error);
+lq_status lq_certificates_page(const lq_certificates *certificates, const char *folder, lq_error *error);
+
+/* ======================================================================================
  *                                        Stacks
  * ======================================================================================
  *

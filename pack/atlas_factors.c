@@ -180,7 +180,7 @@ static void say_head(FILE *out, lq_language language, const lq_factored_textures
                      const lq_kind *kind, unsigned colours) {
     const lq_factored *factored = textures->factored;
     char names[3 * LQ_MAX_AXES][LQ_NAME_SIZE + 2], head[512];
-    lq_check checks[3 * LQ_MAX_AXES];
+    lq_argument checks[3 * LQ_MAX_AXES];
     size_t count = 0;
     int used = snprintf(head, sizeof head, "$(%d lacquer_%s%s|A", colours ? 3 : 1, textures->name,
                         colours ? "_rgb" : "");
@@ -192,7 +192,7 @@ static void say_head(FILE *out, lq_language language, const lq_factored_textures
         if (is_fixed(factored, a)) continue;
         for (int c = 0; c < (coloured ? 3 : 1); c++, count++) {
             snprintf(names[count], sizeof names[count], coloured ? "%s.%c" : "%s", name, "xyz"[c]);
-            checks[count] = (lq_check){names[count], min, max};
+            checks[count] = (lq_argument){names[count], min, max};
         }
         used += snprintf(head + used, sizeof head - (size_t)used, "|%d %s", coloured ? 3 : 1, name);
     }

@@ -123,7 +123,8 @@ void lq_say_coordinate(FILE *out, lq_language language, const lq_axis *axis, con
     else lq_say(out, language, "@pow(%s, %s)", text, power);
 }
 
-void lq_say_check(FILE *out, lq_language language, const lq_check *checks, size_t count, const char *value) {
+void lq_say_check(FILE *out, lq_language language, const lq_argument *checks, size_t count,
+                  const char *value) {
     char low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
     if (count == 0) return;
     fputs(language == LQ_WGSL ? "    if (LACQUER_CHECK && !(" : "#ifdef LACQUER_CHECK\n    if (!(", out);
@@ -147,7 +148,7 @@ static const char *outside(lq_language language, int channels) {
     return language == LQ_C ? c[channels - 1] : shader[channels - 1];
 }
 
-void lq_say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels) {
+void lq_say_outside(FILE *out, lq_language language, const lq_argument *checks, size_t count, int channels) {
     lq_draft text = {.text = NULL};
     FILE *value = lq_draft_open(&text);
     if (value) lq_say(value, language, "%s", outside(language, channels));
@@ -164,7 +165,7 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
                         const lq_tile *tile) {
     const char c[] = {"xyzw"[tile->channel], "xyzw"[(tile->channel + 1) % 4],
                       "xyzw"[(tile->channel + 2) % 4]};
-    lq_check checks[LQ_TEXTURE_AXES];
+    lq_argument checks[LQ_TEXTURE_AXES];
     char head[256];
     int used = snprintf(head, sizeof head, "$(%d lacquer_%s|A", texture->channel_count, texture->name);
     lq_say_comment(out, texture->name, kind);
@@ -172,7 +173,7 @@ static void say_texture(FILE *out, lq_language language, const lq_texture *textu
         const lq_axis *axis = &texture->axes[a];
         fprintf(out, "\n *   %s: %s, %g to %g", axis->name, kind->axes[texture->from[a]].meaning, axis->min,
                 axis->max);
-        checks[a] = (lq_check){axis->name, axis->min, axis->max};
+        checks[a] = (lq_argument){axis->name, axis->min, axis->max};
         used += snprintf(head + used, sizeof head - (size_t)used, "|1 %s", axis->name);
     }
     fputs(" */\n", out);

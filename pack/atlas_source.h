@@ -46,14 +46,15 @@ void lq_say_tile(FILE *out, lq_language language, const lq_tile *tile, size_t ro
 void lq_say_coordinate(FILE *out, lq_language language, const lq_axis *axis, const char *value);
 
 /* What a function does with arguments outside their ranges where LACQUER_CHECK is set. */
-typedef struct lq_check {
+typedef struct lq_argument {
     const char *name;
     double min, max;
-} lq_check;
-void lq_say_check(FILE *out, lq_language language, const lq_check *checks, size_t count, const char *value);
+} lq_argument;
+void lq_say_check(FILE *out, lq_language language, const lq_argument *checks, size_t count,
+                  const char *value);
 
 /* The same where the value is that many channels of a table. */
-void lq_say_outside(FILE *out, lq_language language, const lq_check *checks, size_t count, int channels);
+void lq_say_outside(FILE *out, lq_language language, const lq_argument *checks, size_t count, int channels);
 
 /* The beginning of a table's comment, left open for its arguments. */
 void lq_say_comment(FILE *out, const char *name, const lq_kind *kind);

@@ -137,14 +137,14 @@ static void say_call(FILE *out, lq_language language, const lq_atlas_table *tabl
 #define CALL(table, colours, ...) say_call(out, language, table, colours, (const char *const[]){__VA_ARGS__})
 
 /* What all tables of an argument hold; the checks are made of these. */
-static void narrow(lq_check *check, const lq_atlas_table *table, int axis) {
+static void narrow(lq_argument *check, const lq_atlas_table *table, int axis) {
     double range[2];
     if (!range_of(table, axis, range)) return;
     check->min = fmax(check->min, range[0]);
     check->max = fmin(check->max, range[1]);
 }
 
-static void say_ranges(FILE *out, const lq_check *checks, size_t count) {
+static void say_ranges(FILE *out, const lq_argument *checks, size_t count) {
     for (size_t i = 0; i < count; i++) {
         const size_t length = strcspn(checks[i].name, ".");
         if (checks[i].name[length] && checks[i].name[length + 1] != 'x') continue;
@@ -169,10 +169,10 @@ static void say_conductor(FILE *out, lq_language language, const lq_general *g) 
     double n[2] = {0.0}, kappa[2] = {0.0};
     range_of(g->conductor, 2, n);
     range_of(g->conductor, 3, kappa);
-    const lq_check checks[] = {{"mu", 0.0, 1.0},
-                               {"alpha", 0.0, 1.0},
-                               COLOURS("n", n[0], n[1]),
-                               COLOURS("kappa", kappa[0], kappa[1])};
+    const lq_argument checks[] = {{"mu", 0.0, 1.0},
+                                  {"alpha", 0.0, 1.0},
+                                  COLOURS("n", n[0], n[1]),
+                                  COLOURS("kappa", kappa[0], kappa[1])};
     const size_t count = sizeof checks / sizeof *checks;
     fprintf(out, "\n/* A metal of index n + i kappa relative to the medium above: %zu fetches.",
             fetches_of(g->conductor, true));
@@ -194,11 +194,11 @@ static void say_conductor(FILE *out, lq_language language, const lq_general *g) 
 /* What stays clamps: R + T <= 1 and R10 + T10 <= 1, each of a table of its own with its own error, or light
  * would be made. */
 static void say_coated_lambertian(FILE *out, lq_language language, const lq_general *g) {
-    lq_check checks[] = {{"mu", 0.0, 1.0},
-                         {"alpha", 0.0, 1.0},
-                         {"eta", 0.0, INFINITY},
-                         COLOURS("tau", 0.0, 1.0),
-                         COLOURS("rho", 0.0, 1.0)};
+    lq_argument checks[] = {{"mu", 0.0, 1.0},
+                            {"alpha", 0.0, 1.0},
+                            {"eta", 0.0, INFINITY},
+                            COLOURS("tau", 0.0, 1.0),
+                            COLOURS("rho", 0.0, 1.0)};
     const size_t count = sizeof checks / sizeof *checks;
     const lq_atlas_table *const of_eta[] = {g->dielectric, g->enters}, *const diffuse[] = {g->leaves,
                                                                                            g->returns,
@@ -261,7 +261,7 @@ static void say_inverse(FILE *out, lq_language language, const lq_general *g, co
 }
 
 /* Cosines on both sides, and the base's index as it is seen from inside, which has ranges of its own. */
-static void say_inside(FILE *out, lq_language language, const lq_check *eta, const lq_check *index) {
+static void say_inside(FILE *out, lq_language language, const lq_argument *eta, const lq_argument *index) {
     char low[LQ_LITERAL_SIZE], high[LQ_LITERAL_SIZE];
     lq_say(out, language,
            "    $=1 i = @clamp(mu, 0.0$f, 1.0$f);\n"
@@ -324,13 +324,13 @@ static void say_layered(FILE *out, lq_language language, const lq_general *g) {
     range_of(g->pass, 2, pass);
     range_of(g->conductor, 2, n);
     range_of(g->conductor, 3, kappa);
-    const lq_check index[] = {COLOURS("base_n", n[0], n[1]), COLOURS("base_kappa", kappa[0], kappa[1])};
+    const lq_argument index[] = {COLOURS("base_n", n[0], n[1]), COLOURS("base_kappa", kappa[0], kappa[1])};
     const double most = 1.0 / fmax(inside[0], pass[0]), least = 1.0 / fmin(inside[1], pass[1]);
-    lq_check checks[] = {{"mu", 0.0, 1.0},
-                         {"alpha", 0.0, 1.0},
-                         {"eta", least, most},
-                         COLOURS("tau", 0.0, 1.0),
-                         {"base_alpha", 0.0, 1.0}};
+    lq_argument checks[] = {{"mu", 0.0, 1.0},
+                            {"alpha", 0.0, 1.0},
+                            {"eta", least, most},
+                            COLOURS("tau", 0.0, 1.0),
+                            {"base_alpha", 0.0, 1.0}};
     const size_t count = sizeof checks / sizeof *checks;
     narrow(&checks[2], g->dielectric, 2);
     fprintf(out,

@@ -157,21 +157,21 @@ static void say_fetches(FILE *out, lq_language language, const lq_lobes *lobes, 
 /* What a material takes: the comment, the head of its function and the check of its arguments. */
 static void say_arguments(FILE *out, lq_language language, const lq_material *m, const char *name) {
     static const char *const rho[LQ_MATERIAL_COLOURS] = {"rho.x", "rho.y", "rho.z"};
-    lq_check checks[1 + LQ_MATERIAL_RANGES + LQ_MATERIAL_COLOURS] = {{"mu", 0.0, 1.0}};
+    lq_argument checks[1 + LQ_MATERIAL_RANGES + LQ_MATERIAL_COLOURS] = {{"mu", 0.0, 1.0}};
     size_t count = 1;
     char head[512];
     int used = snprintf(head, sizeof head, "$(L lacquer_%s|A|1 mu", name);
     for (int r = 0; r < m->range_count; r++) {
         const lq_material_range *range = &m->ranges[r];
         fprintf(out, "\n *   %s: layer %s, %g to %g", range->name, range->path, range->min, range->max);
-        checks[count++] = (lq_check){range->name, range->min, range->max};
+        checks[count++] = (lq_argument){range->name, range->min, range->max};
         used += snprintf(head + used, sizeof head - (size_t)used, "|1 %s", range->name);
     }
     if (m->open_rho) {
         fprintf(out, "\n *   rho: albedo of the base, %g to %g", m->rho_min, m->rho_max);
         snprintf(head + used, sizeof head - (size_t)used, "|3 rho");
         for (int c = 0; c < LQ_MATERIAL_COLOURS; c++)
-            checks[count++] = (lq_check){rho[c], m->rho_min, m->rho_max};
+            checks[count++] = (lq_argument){rho[c], m->rho_min, m->rho_max};
     }
     fputs(" */\n", out);
     lq_say(out, language, "%s$)\n{\n", head);

@@ -110,9 +110,8 @@ static double bumped(const void *subject, int channel, const double *point) {
     return lq_fresnel_dielectric(point[0], point[2], NULL) + bump(point);
 }
 
-static lq_certify_request bumped_request(void) {
-    lq_certify_request request = {
-        .kind = lq_kind_find("fgd-dielectric", NULL), .points = 100000, .starts = 4};
+static lq_sample_request bumped_request(void) {
+    lq_sample_request request = {.kind = lq_kind_find("fgd-dielectric", NULL), .points = 100000, .starts = 4};
     request.settings = lq_settings_default();
     request.domain = (lq_domain){{0.05, 0.0, 1.05}, {1.0, 0.0, 2.0}};
     request.stages[0] = (lq_stage){"bumped", "bump", bumped, NULL};
@@ -124,9 +123,9 @@ static lq_certify_request bumped_request(void) {
 /* Its base is 0.5^2 of a domain of 0.95^2; a share s of that is off by more than (1 - sqrt(s)) 0.01. */
 static void test_planted_error_is_measured(void **state) {
     (void)state;
-    lq_certificate c;
-    const lq_certify_request request = bumped_request();
-    assert_int_equal(lq_certify(&request, NULL, &c, NULL), LQ_OK);
+    lq_sampled c;
+    const lq_sample_request request = bumped_request();
+    assert_int_equal(lq_sample(&request, NULL, &c, NULL), LQ_OK);
     const double base = 0.5 * 0.5 / (0.95 * 0.95);
     assert_near(c.total.mean, 0.01 / 3.0 * base, 0.1 * 0.01 / 3.0 * base);
     assert_near(c.total.rms, 0.01 * sqrt(base / 6.0), 0.1 * 0.01 * sqrt(base / 6.0));
@@ -140,23 +139,23 @@ static void test_planted_error_is_measured(void **state) {
     assert_near(c.found.at[2], bump_at[1], 1.3e-3);
     assert_near(c.max, c.found.error, 0.0);
     assert_near(c.unseen, 1.0 - pow(0.05, 1.0 / (double)c.plan.count), 1e-12);
-    lq_certificate_free(&c);
+    lq_sampled_free(&c);
 }
 
 static void test_threads_change_no_bit(void **state) {
     (void)state;
-    lq_certificate one, three;
-    lq_certify_request request = bumped_request();
+    lq_sampled one, three;
+    lq_sample_request request = bumped_request();
     request.threads = 1;
-    assert_int_equal(lq_certify(&request, NULL, &one, NULL), LQ_OK);
+    assert_int_equal(lq_sample(&request, NULL, &one, NULL), LQ_OK);
     request.threads = 3;
-    assert_int_equal(lq_certify(&request, NULL, &three, NULL), LQ_OK);
+    assert_int_equal(lq_sample(&request, NULL, &three, NULL), LQ_OK);
     assert_memory_equal(one.exact, three.exact, one.points * sizeof *one.exact);
     assert_memory_equal(&one.total, &three.total, sizeof one.total);
     assert_memory_equal(one.found.at, three.found.at, sizeof one.found.at);
     assert_near(one.found.error, three.found.error, 0.0);
-    lq_certificate_free(&one);
-    lq_certificate_free(&three);
+    lq_sampled_free(&one);
+    lq_sampled_free(&three);
 }
 
 /* ------------------------------------------------------------------------------------ folders */
@@ -199,7 +198,7 @@ static void pack_of_fakes(lq_certified *list, const fake *fakes) {
                                  "diffuse-reflection"};
     memset(list, 0, 4 * sizeof *list);
     for (int i = 0; i < 4; i++) {
-        lq_certify_request *r = &list[i].certificate.request;
+        lq_sample_request *r = &list[i].certificate.request;
         r->kind = lq_kind_find(kinds[i], NULL);
         r->settings = lq_settings_default();
         r->stages[0] = (lq_stage){"fake", "fake", fake_decode, &fakes[i]};

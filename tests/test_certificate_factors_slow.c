@@ -36,7 +36,7 @@ static lq_factored *factor(const lq_table *table) {
 static const char path[] = "test_certificate_factors.exr", table_path[] = "test_certificate_table.exr";
 
 static void certify(lq_certified *certified, bool with_table, size_t points) {
-    lq_certify_options options = {.points = points, .seed = 1};
+    lq_judging options = {.points = points, .seed = 1};
     memset(certified, 0, sizeof *certified);
     assert_int_equal(lq_subject_read(&certified->subject, path, NULL, NULL), LQ_OK);
     if (with_table)
@@ -57,7 +57,7 @@ static void test_parts_add_up(void **state) {
     (void)state;
     lq_certified *certified = malloc(sizeof *certified);
     certify(certified, true, 20000);
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     assert_int_equal(c->request.stage_count, 4);
     const char *const parts[] = {"interpolation", "factorisation", "half-float", "filter"};
     double bias = 0.0;
@@ -137,7 +137,7 @@ static void test_half_a_cell_is_named(void **state) {
         }
     assert_int_equal(lq_factored_write(factored, path, NULL), LQ_OK);
     lq_factored_free(factored);
-    lq_certify_options options = {.points = 20000, .seed = 1};
+    lq_judging options = {.points = 20000, .seed = 1};
     memset(certified, 0, sizeof *certified);
     assert_int_equal(lq_subject_read(&certified->subject, path, NULL, NULL), LQ_OK);
     assert_int_equal(lq_budget_parse(&options.rule.budget, "max=1e-3", NULL), LQ_OK);

@@ -30,7 +30,7 @@ static const lq_check *check_named(const lq_certified *certified, const char *na
 }
 
 static void certify(lq_certified *certified, lq_table *table, size_t points) {
-    lq_certify_options options = {.points = points, .seed = 1};
+    lq_judging options = {.points = points, .seed = 1};
     memset(certified, 0, sizeof *certified);
     certified->subject.table = table;
     assert_int_equal(lq_origin_of(table, NULL, &certified->subject.origin, NULL), LQ_OK);
@@ -98,7 +98,7 @@ static void test_wrong_masking_is_named(void **state) {
     const lq_kind *kind = lq_kind_find("albedo", NULL);
     lq_settings settings = lq_settings_default();
     lq_certified *certified = calloc(1, sizeof *certified);
-    lq_certify_options options = {.points = 1000, .seed = 1};
+    lq_judging options = {.points = 1000, .seed = 1};
     lq_axis axes[2];
     settings.masking = LQ_SEPARABLE;
     assert_int_equal(lq_axis_parse(&axes[0], "mu", "0.05:1:33", NULL), LQ_OK);

@@ -32,11 +32,11 @@ double lq_decode_gpu(const void *factored, int channel, const double *point) {
 
 /* ------------------------------------------------------------------------------------- sampling */
 
-static size_t channels_of(const lq_certificate *c) {
+static size_t channels_of(const lq_sampled *c) {
     return (size_t)c->request.kind->channel_count;
 }
 
-static lq_status allocate(lq_certificate *c, lq_error *error) {
+static lq_status allocate(lq_sampled *c, lq_error *error) {
     const size_t axes = (size_t)c->request.kind->axis_count, values = c->points * channels_of(c);
     c->at = malloc(c->points * axes * sizeof *c->at);
     c->exact = malloc(values * sizeof *c->exact);
@@ -49,8 +49,8 @@ static lq_status allocate(lq_certificate *c, lq_error *error) {
 }
 
 /* Block `b` into its places. */
-static lq_status measure_block(lq_certificate *c, size_t b, double *estimate, lq_error *error) {
-    const lq_certify_request *r = &c->request;
+static lq_status measure_block(lq_sampled *c, size_t b, double *estimate, lq_error *error) {
+    const lq_sample_request *r = &c->request;
     const int axes = r->kind->axis_count;
     const size_t count = c->plan.per_block, first = b * count;
     lq_block *block = malloc(sizeof *block);
@@ -76,7 +76,7 @@ static lq_status measure_block(lq_certificate *c, size_t b, double *estimate, lq
     return status;
 }
 
-static lq_status measure(lq_certificate *c, const lq_progress *progress, lq_error *error) {
+static lq_status measure(lq_sampled *c, const lq_progress *progress, lq_error *error) {
     const int threads = c->request.threads > 0 ? c->request.threads : omp_get_num_procs();
     const size_t blocks = c->plan.count;
     lq_status status = LQ_OK;
@@ -117,8 +117,8 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* p99 and its limit from `size`, |d| of every point block by block, repeated for `channels`. */
-static void quantiles(const lq_certificate *c, size_t channels, const double *size, double *sorted,
-                      size_t *hits, lq_figures *f) {
+static void quantiles(const lq_sampled *c, size_t channels, const double *size, double *sorted, size_t *hits,
+                      lq_figures *f) {
     const size_t count = c->points * channels;
     memcpy(sorted, size, count * sizeof *sorted);
     qsort(sorted, count, sizeof *sorted, ascending);
@@ -131,7 +131,7 @@ static void quantiles(const lq_certificate *c, size_t channels, const double *si
 }
 
 /* Of first - second, `channels` lists of all points; `work` holds twice as many numbers. */
-static void reduce(const lq_certificate *c, size_t channels, const double *first, const double *second,
+static void reduce(const lq_sampled *c, size_t channels, const double *first, const double *second,
                    double *work, size_t *hits, lq_figures *f) {
     const size_t count = c->points * channels;
     *f = (lq_figures){.max = -1.0};
@@ -149,7 +149,7 @@ static void reduce(const lq_certificate *c, size_t channels, const double *first
     quantiles(c, channels, work, work + count, hits, f);
 }
 
-static lq_status reduce_all(lq_certificate *c, lq_error *error) {
+static lq_status reduce_all(lq_sampled *c, lq_error *error) {
     const size_t channels = channels_of(c), values = c->points * channels;
     double *work = malloc(2 * values * sizeof *work);
     size_t *hits = malloc(c->plan.count * sizeof *hits);
@@ -170,10 +170,10 @@ static lq_status reduce_all(lq_certificate *c, lq_error *error) {
     return good ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for %zu errors", values);
 }
 
-lq_status lq_certify(const lq_certify_request *request, const lq_progress *progress,
-                     lq_certificate *certificate, lq_error *error) {
-    lq_certificate *c = certificate;
-    *c = (lq_certificate){.request = *request};
+lq_status lq_sample(const lq_sample_request *request, const lq_progress *progress, lq_sampled *certificate,
+                    lq_error *error) {
+    lq_sampled *c = certificate;
+    *c = (lq_sampled){.request = *request};
     lq_status status =
         lq_block_plan_make(&c->plan, request->kind, &request->domain, request->points, request->seed, error);
     if (status != LQ_OK) return status;
@@ -181,15 +181,15 @@ lq_status lq_certify(const lq_certify_request *request, const lq_progress *progr
     status = allocate(c, error);
     if (status == LQ_OK) status = measure(c, progress, error);
     if (status == LQ_OK) status = reduce_all(c, error);
-    if (status == LQ_OK) status = lq_certify_search(c, error);
+    if (status == LQ_OK) status = lq_sampled_search(c, error);
     c->max = fmax(c->total.max, c->found.error);
     return status;
 }
 
-void lq_certificate_free(lq_certificate *c) {
+void lq_sampled_free(lq_sampled *c) {
     lq_block_plan_free(&c->plan);
     free(c->at);
     free(c->exact);
     for (int s = 0; s < LQ_STAGES_MAX; s++) free(c->decoded[s]);
-    *c = (lq_certificate){.points = 0};
+    *c = (lq_sampled){.points = 0};
 }

@@ -21,7 +21,7 @@ typedef struct lq_stage {
     const void *subject;
 } lq_stage;
 
-typedef struct lq_certify_request {
+typedef struct lq_sample_request {
     const lq_kind *kind;
     lq_settings settings;  /* of the exact values */
     const lq_curve *curve; /* of a mapping (pack/mapping.h): what its values are computed from */
@@ -33,7 +33,7 @@ typedef struct lq_certify_request {
     size_t starts; /* of the directed search, at most LQ_STARTS_MAX */
     uint64_t seed;
     int threads; /* 0: one per core; results do not depend on it */
-} lq_certify_request;
+} lq_sample_request;
 
 /* Errors over the points: d = decoded - exact, or the part of one stage. */
 typedef struct lq_figures {
@@ -51,8 +51,8 @@ typedef struct lq_found {
     size_t evaluations;           /* exact values the search took */
 } lq_found;
 
-typedef struct lq_certificate {
-    lq_certify_request request;
+typedef struct lq_sampled {
+    lq_sample_request request;
     lq_block_plan plan;
     size_t points;
     double *at;                                       /* [i * axis_count + a] */
@@ -65,15 +65,15 @@ typedef struct lq_certificate {
     double unseen;    /* with LQ_CONFIDENCE no larger share of the domain is off by more than total.max */
     lq_found found;
     double max; /* the larger of total.max and found.error */
-} lq_certificate;
+} lq_sampled;
 
 /* Free it in every case. */
-lq_status lq_certify(const lq_certify_request *request, const lq_progress *progress,
-                     lq_certificate *certificate, lq_error *error);
-void lq_certificate_free(lq_certificate *certificate);
+lq_status lq_sample(const lq_sample_request *request, const lq_progress *progress, lq_sampled *certificate,
+                    lq_error *error);
+void lq_sampled_free(lq_sampled *certificate);
 
 /* The directed search alone: fills `found`. */
-lq_status lq_certify_search(lq_certificate *certificate, lq_error *error);
+lq_status lq_sampled_search(lq_sampled *certificate, lq_error *error);
 
 /* Decoders: a stored table between its nodes, factors in double, and a texture and factors as a GPU filters
  * them. */

@@ -54,7 +54,7 @@ const lq_check *lq_certified_failure(const lq_certified *certified) {
 }
 
 void lq_check_budget(lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const double values[LQ_NORMS] = {c->max, c->total.p99, c->total.rms, c->total.mean};
     for (int n = 0; n < LQ_NORMS; n++) {
         const double bound = certified->budget.bound[n];
@@ -90,7 +90,7 @@ static void check_files(lq_certified *certified) {
 /* ----------------------------------------------------------------------------------- the whole */
 
 /* Kinds whose every value needs a solve get fewer points. */
-static size_t choose_points(const lq_certify_options *options, const lq_kind *kind) {
+static size_t choose_points(const lq_judging *options, const lq_kind *kind) {
     if (options->points > 0) return options->points;
     bool shares = false;
     const int slice = lq_block_slice_axis(kind);
@@ -99,7 +99,7 @@ static size_t choose_points(const lq_certify_options *options, const lq_kind *ki
 }
 
 /* A fraction of the least bound: the solver's own error must not matter. */
-static double choose_tolerance(const lq_certify_options *options, const lq_kind *kind) {
+static double choose_tolerance(const lq_judging *options, const lq_kind *kind) {
     double tolerance = 1e-4;
     if (options->tolerance > 0.0) return options->tolerance;
     for (int n = 0; n < LQ_NORMS; n++)
@@ -108,25 +108,25 @@ static double choose_tolerance(const lq_certify_options *options, const lq_kind 
     return fmax(tolerance, kind->finest_tolerance);
 }
 
-lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *options,
-                            const lq_progress *progress, lq_error *error) {
+lq_status lq_certified_make(lq_certified *certified, const lq_judging *options, const lq_progress *progress,
+                            lq_error *error) {
     const lq_subject *subject = &certified->subject;
     const lq_kind *kind = subject->origin.kind;
-    lq_certify_request request = {.kind = kind,
-                                  .settings = subject->origin.settings,
-                                  .curve = subject->curve,
-                                  .relative = subject->relative,
-                                  .domain = lq_subject_domain(subject),
-                                  .points = choose_points(options, kind),
-                                  .starts = LQ_CERTIFICATE_STARTS,
-                                  .seed = options->seed,
-                                  .threads = options->threads};
+    lq_sample_request request = {.kind = kind,
+                                 .settings = subject->origin.settings,
+                                 .curve = subject->curve,
+                                 .relative = subject->relative,
+                                 .domain = lq_subject_domain(subject),
+                                 .points = choose_points(options, kind),
+                                 .starts = LQ_CERTIFICATE_STARTS,
+                                 .seed = options->seed,
+                                 .threads = options->threads};
     request.stage_count = lq_subject_stages(subject, request.stages);
     request.settings.tolerance = choose_tolerance(options, kind);
     request.settings.threads = options->threads;
     certified->budget = options->rule.budget;
     lq_status status = lq_domain_cut(&request.domain, kind, &options->rule, error);
-    if (status == LQ_OK) status = lq_certify(&request, progress, &certified->certificate, error);
+    if (status == LQ_OK) status = lq_sample(&request, progress, &certified->certificate, error);
     if (status != LQ_OK) return status;
     lq_check_budget(certified);
     check_files(certified);
@@ -139,7 +139,7 @@ lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *o
 }
 
 void lq_certified_free(lq_certified *certified) {
-    lq_certificate_free(&certified->certificate);
+    lq_sampled_free(&certified->certificate);
     lq_subject_free(&certified->subject);
     free(certified->checks);
     certified->checks = NULL;

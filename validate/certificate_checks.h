@@ -5,15 +5,6 @@
 #include "validate/certificate_budget.h"
 #include "validate/certificate_subject.h"
 
-typedef enum lq_outcome { LQ_PASSED, LQ_FAILED, LQ_NOTED /* measured, not judged */ } lq_outcome;
-
-typedef struct lq_check {
-    char name[40]; /* "budget max", "range decoded" */
-    lq_outcome outcome;
-    double value, limit; /* limit NAN: none */
-    char detail[240];
-} lq_check;
-
 /* The stored entries against the solver at a tenth of their tolerance; the entry that is furthest out counts
  * for `max`. count 0: there is no stored table. */
 typedef struct lq_integration {
@@ -25,7 +16,7 @@ typedef struct lq_integration {
 typedef struct lq_certified {
     lq_subject subject;
     lq_budget budget;
-    lq_certificate certificate;
+    lq_sampled certificate;
     lq_integration integration;
     int check_count, check_room;
     lq_check *checks;
@@ -47,19 +38,19 @@ extern const lq_check lq_check_lost;
 const lq_check *lq_certified_failure(const lq_certified *certified);
 
 /* What a whole certificate is made of. */
-typedef struct lq_certify_options {
+typedef struct lq_judging {
     lq_rule rule;     /* budget and domain */
     size_t points;    /* 0: LQ_CERTIFICATE_POINTS, or fewer where every value costs a solve */
     double tolerance; /* of the exact values; 0: that of the kind */
     uint64_t seed;
     int threads;
-} lq_certify_options;
+} lq_judging;
 
 enum { LQ_CERTIFICATE_POINTS = 100000, LQ_CERTIFICATE_SOLVES = 1024, LQ_CERTIFICATE_STARTS = 4 };
 
 /* Sample, search and judge the subject that is in `certified`. */
-lq_status lq_certified_make(lq_certified *certified, const lq_certify_options *options,
-                            const lq_progress *progress, lq_error *error);
+lq_status lq_certified_make(lq_certified *certified, const lq_judging *options, const lq_progress *progress,
+                            lq_error *error);
 void lq_certified_free(lq_certified *certified);
 
 /* Parts of the above, each in a file of its own. */

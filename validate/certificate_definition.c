@@ -13,7 +13,7 @@ static size_t grid_size(const char *axis) {
 }
 
 static lq_status decode_grid(const lq_certified *certified, lq_table **grid, lq_error *error) {
-    const lq_certify_request *r = &certified->certificate.request;
+    const lq_sample_request *r = &certified->certificate.request;
     const lq_stage *last = &r->stages[r->stage_count - 1];
     lq_axis axes[LQ_MAX_AXES] = {{.size = 0}};
     lq_status status = LQ_OK;

@@ -17,7 +17,7 @@ typedef struct coating {
 } coating;
 
 static double decode(const lq_certified *certified, const double *point) {
-    const lq_certify_request *r = &certified->certificate.request;
+    const lq_sample_request *r = &certified->certificate.request;
     const lq_stage *last = &r->stages[r->stage_count - 1];
     return last->decode(last->subject, 0, point);
 }
@@ -37,7 +37,7 @@ static double at_diffuse(const lq_certified *certified, double alpha, double eta
 /* The table of a kind with this NDF, if it holds all orders of scattering and reaches tau = 1. */
 static lq_certified *find(lq_certified *list, size_t count, const char *kind, const char *ndf) {
     for (size_t i = 0; i < count; i++) {
-        const lq_certify_request *r = &list[i].certificate.request;
+        const lq_sample_request *r = &list[i].certificate.request;
         if (strcmp(r->kind->id, kind) != 0 || strcmp(r->settings.ndf, ndf) != 0 ||
             r->settings.scattering != LQ_MULTIPLE)
             continue;
@@ -51,7 +51,7 @@ static lq_certified *find(lq_certified *list, size_t count, const char *kind, co
 
 static void cut(double range[2], const lq_certified *certified, const char *axis) {
     if (!certified) return;
-    const lq_certify_request *r = &certified->certificate.request;
+    const lq_sample_request *r = &certified->certificate.request;
     for (int a = 0; a < r->kind->axis_count; a++)
         if (strcmp(r->kind->axes[a].name, axis) == 0) {
             range[0] = fmax(range[0], r->domain.min[a]);

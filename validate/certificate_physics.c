@@ -49,7 +49,7 @@ static void check_stored_range(lq_certified *certified) {
 }
 
 static void check_decoded_range(lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const double *decoded = c->decoded[c->request.stage_count - 1];
     double worst = 0.0;
     /* Parts of the exact value have no range: that they do not change sign is what is left. */
@@ -67,7 +67,7 @@ static double noticeable(const lq_certified *certified) {
 }
 
 static void check_false_zeros(lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const double *decoded = c->decoded[c->request.stage_count - 1];
     double worst = 0.0;
     size_t count = 0;
@@ -98,7 +98,7 @@ static double reversal(const double *exact, const double *decoded, size_t n, siz
 }
 
 static void check_monotony(lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const lq_block_plan *plan = &c->plan;
     const double *decoded = c->decoded[c->request.stage_count - 1];
     const double bound = certified->budget.bound[LQ_NORM_MAX];
@@ -149,7 +149,7 @@ typedef struct band {
 } band;
 
 /* Decoded minus exact over one block, values[channel * points + i]. */
-static lq_status errors_of(const lq_certify_request *r, const lq_block *block, double *values,
+static lq_status errors_of(const lq_sample_request *r, const lq_block *block, double *values,
                            lq_error *error) {
     const lq_stage *last = &r->stages[r->stage_count - 1];
     const size_t points = lq_block_points(block, r->kind->axis_count);
@@ -165,7 +165,7 @@ static lq_status errors_of(const lq_certify_request *r, const lq_block *block, d
 }
 
 /* Three blocks one texel apart along `axis`, or one block that holds triples along it. */
-static lq_status second_differences(const lq_certify_request *r, const lq_block *blocks, int block_count,
+static lq_status second_differences(const lq_sample_request *r, const lq_block *blocks, int block_count,
                                     int axis, band *to, lq_error *error) {
     const size_t points = lq_block_points(&blocks[0], r->kind->axis_count);
     const size_t values = points * (size_t)r->kind->channel_count;
@@ -232,7 +232,7 @@ static void judge_bands(lq_certified *certified, double *size, size_t count) {
 }
 
 lq_status lq_check_bands(lq_certified *certified, lq_error *error) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const lq_kind *kind = c->request.kind;
     const size_t room = c->plan.per_block * TRIPLES * (size_t)kind->channel_count;
     const size_t items = (size_t)kind->axis_count * BANDS;

@@ -44,7 +44,7 @@ static double read_at(const lq_axis *axis, lq_sampling sampling, double x) {
 
 /* rms over some of the points with one axis read otherwise; axis -1: as it is. */
 static double rms_if(const lq_certified *certified, int axis, lq_sampling sampling) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const lq_stage *last = &c->request.stages[c->request.stage_count - 1];
     const size_t axes = (size_t)c->request.kind->axis_count, step = 1 + c->points / AGAIN;
     double sum = 0.0, count = 0.0;

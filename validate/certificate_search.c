@@ -18,7 +18,7 @@ enum { ROUNDS = 8 };
 static const double first_step = 0.02, step_shrinks = 0.5, window_shrinks = 0.55;
 
 typedef struct climb {
-    const lq_certificate *c;
+    const lq_sampled *c;
     lq_found best;
     double step[LQ_MAX_AXES]; /* in parts of the domain */
     lq_block block;
@@ -46,7 +46,7 @@ static void place(climb *s, const double *at) {
 
 /* One solve and its window; keeps the best. */
 static lq_status look(climb *s, const double *at, lq_found *best, lq_error *error) {
-    const lq_certify_request *r = &s->c->request;
+    const lq_sample_request *r = &s->c->request;
     const lq_stage *last = &r->stages[r->stage_count - 1];
     double estimate;
     place(s, at);
@@ -97,7 +97,7 @@ static lq_status look_around(climb *s, int along, lq_error *error) {
     return status;
 }
 
-static lq_status climb_from(const lq_certificate *c, size_t value, lq_found *found, lq_error *error) {
+static lq_status climb_from(const lq_sampled *c, size_t value, lq_found *found, lq_error *error) {
     const lq_kind *kind = c->request.kind;
     size_t room = (size_t)kind->channel_count;
     for (int a = 0; a < kind->axis_count; a++) room *= window_size(&c->plan, a);
@@ -123,7 +123,7 @@ static lq_status climb_from(const lq_certificate *c, size_t value, lq_found *fou
 }
 
 /* The worst value of each of the `count` worst blocks, worst first. */
-static size_t choose_starts(const lq_certificate *c, size_t *starts, size_t count) {
+static size_t choose_starts(const lq_sampled *c, size_t *starts, size_t count) {
     const double *decoded = c->decoded[c->request.stage_count - 1];
     double size[LQ_STARTS_MAX];
     size_t kept = 0;
@@ -148,7 +148,7 @@ static size_t choose_starts(const lq_certificate *c, size_t *starts, size_t coun
     return kept;
 }
 
-lq_status lq_certify_search(lq_certificate *c, lq_error *error) {
+lq_status lq_sampled_search(lq_sampled *c, lq_error *error) {
     size_t starts[LQ_STARTS_MAX];
     lq_found found[LQ_STARTS_MAX];
     lq_status status[LQ_STARTS_MAX];

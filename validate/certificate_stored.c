@@ -150,7 +150,7 @@ static double fitted_by(const lq_table *table) {
 
 lq_status lq_check_stored(lq_certified *certified, lq_error *error) {
     const lq_subject *subject = &certified->subject;
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     if (!subject->table) return LQ_OK;
     const double tolerance = subject->origin.settings.tolerance;
     stored s = {.table = subject->table,

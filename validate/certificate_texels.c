@@ -189,7 +189,7 @@ static lq_status find_sites(const lq_certified *certified, site *list, size_t *c
 
 /* ----------------------------------------------------------------------------------- the spikes */
 
-static lq_status error_at(const lq_certify_request *r, const lq_factored *factored, const double *x,
+static lq_status error_at(const lq_sample_request *r, const lq_factored *factored, const double *x,
                           double *off, lq_error *error) {
     double exact, estimate;
     const lq_status status = lq_point_exact(r->kind, &r->settings, r->curve, x, &exact, &estimate, error);
@@ -198,7 +198,7 @@ static lq_status error_at(const lq_certify_request *r, const lq_factored *factor
 }
 
 static lq_status measure(const lq_certified *certified, site *s, lq_error *error) {
-    const lq_certify_request *r = &certified->certificate.request;
+    const lq_sample_request *r = &certified->certificate.request;
     double here, off[4];
     lq_status status = error_at(r, certified->subject.factored, s->at, &here, error);
     for (int k = 0; status == LQ_OK && k < 2 * s->neighbours; k++)
@@ -232,7 +232,7 @@ static void judge(lq_certified *certified, site *list, size_t count) {
 
 lq_status lq_check_texels(lq_certified *certified, lq_error *error) {
     if (!certified->subject.factored) return LQ_OK;
-    const lq_certify_request *r = &certified->certificate.request;
+    const lq_sample_request *r = &certified->certificate.request;
     const int threads = r->threads > 0 ? r->threads : omp_get_num_procs();
     site *list = calloc((size_t)2 * LOOKED_AT, sizeof *list);
     size_t count[2] = {0, 0};

@@ -35,7 +35,7 @@ static void put_summary(FILE *out, const lq_certified *list, size_t count) {
           "<th>result</th></tr>\n",
           out);
     for (size_t i = 0; i < count; i++) {
-        const lq_certificate *c = &list[i].certificate;
+        const lq_sampled *c = &list[i].certificate;
         const lq_check *failed = lq_certified_failure(&list[i]);
         fprintf(out, "<tr><td><a href=\"#t%zu\">", i);
         lq_text_put(out, list[i].subject.name);
@@ -57,7 +57,7 @@ static void put_figures(FILE *out, const char *name, const char *channel, const 
 }
 
 static void put_errors(FILE *out, const lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const int channels = c->request.kind->channel_count;
     const char *head =
         "<th>max</th><th>p99</th><th>p99, 95 %</th><th>rms</th><th>mean</th><th>bias</th></tr>\n";
@@ -95,7 +95,7 @@ static void put_checks(FILE *out, const lq_certified *certified) {
 
 /* ---------------------------------------------------------------------------------- the pictures */
 
-static void put_maps(FILE *out, const lq_certificate *c) {
+static void put_maps(FILE *out, const lq_sampled *c) {
     const lq_domain *d = &c->request.domain;
     fputs("<h3>Where the errors are</h3>\n<p>Largest error in each cell, over every pair of axes. ", out);
     fputs("<svg class=\"map\" width=\"420\" height=\"34\" viewBox=\"0 0 420 34\" "
@@ -128,7 +128,7 @@ static lq_status put_ranks(FILE *out, const lq_certified *certified, lq_error *e
 }
 
 static lq_status put_one(FILE *out, const lq_certified *certified, size_t number, lq_error *error) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     char what[128], at[160];
     lq_origin_describe(c->request.kind, &certified->subject.origin.settings, what, sizeof what);
     lq_point_text(c->request.kind, c->found.at, at, sizeof at);

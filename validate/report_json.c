@@ -14,7 +14,7 @@ static json_t *point_json(const lq_kind *kind, const double *at) {
     return root;
 }
 
-static json_t *figures_json(const lq_certificate *c, const lq_figures *f) {
+static json_t *figures_json(const lq_sampled *c, const lq_figures *f) {
     const size_t axes = (size_t)c->request.kind->axis_count;
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "max", lq_json_number(f->max), "p99",
                      lq_json_number(f->p99), "p99_limit", lq_json_number(f->p99_limit), "rms",
@@ -23,7 +23,7 @@ static json_t *figures_json(const lq_certificate *c, const lq_figures *f) {
                      point_json(c->request.kind, c->at + f->worst % c->points * axes));
 }
 
-static json_t *stages_json(const lq_certificate *c) {
+static json_t *stages_json(const lq_sampled *c) {
     json_t *list = json_array();
     for (int s = 0; s < c->request.stage_count; s++)
         for (int k = 0; k < c->request.kind->channel_count; k++)
@@ -35,7 +35,7 @@ static json_t *stages_json(const lq_certificate *c) {
     return list;
 }
 
-static json_t *domain_json(const lq_certificate *c) {
+static json_t *domain_json(const lq_sampled *c) {
     json_t *root = json_object();
     for (int a = 0; a < c->request.kind->axis_count; a++)
         lq_json_set(&root, c->request.kind->axes[a].name,
@@ -43,7 +43,7 @@ static json_t *domain_json(const lq_certificate *c) {
     return root;
 }
 
-static json_t *found_json(const lq_certificate *c) {
+static json_t *found_json(const lq_sampled *c) {
     json_t *root = point_json(c->request.kind, c->found.at);
     lq_json_set(&root, "decoded", lq_json_number(c->found.decoded));
     lq_json_set(&root, "exact", lq_json_number(c->found.exact));
@@ -66,7 +66,7 @@ static json_t *checks_json(const lq_certified *certified) {
 }
 
 static json_t *certified_json(const lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const lq_check *failed = lq_certified_failure(certified);
     json_t *root = json_pack("{s:o, s:s, s:o, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:b}", "file",
                              lq_json_text(certified->subject.name), "table", c->request.kind->id, "ndf",

@@ -25,7 +25,7 @@ static size_t cell_of(const lq_domain *domain, int axis, double x) {
     return (size_t)at;
 }
 
-static void gather(const lq_certificate *c, int axis_x, int axis_y, double *most) {
+static void gather(const lq_sampled *c, int axis_x, int axis_y, double *most) {
     const size_t axes = (size_t)c->request.kind->axis_count;
     const double *decoded = c->decoded[c->request.stage_count - 1];
     for (size_t i = 0; i < (size_t)CELLS * CELLS; i++) most[i] = -1.0;
@@ -37,7 +37,7 @@ static void gather(const lq_certificate *c, int axis_x, int axis_y, double *most
     }
 }
 
-void lq_report_map(const lq_certificate *c, int axis_x, int axis_y, FILE *out) {
+void lq_report_map(const lq_sampled *c, int axis_x, int axis_y, FILE *out) {
     const lq_axis_info *x = &c->request.kind->axes[axis_x], *y = &c->request.kind->axes[axis_y];
     const lq_domain *d = &c->request.domain;
     double most[CELLS * CELLS];
@@ -68,7 +68,7 @@ void lq_report_map(const lq_certificate *c, int axis_x, int axis_y, FILE *out) {
 /* --------------------------------------------------------------------------------- histograms */
 
 /* Bins of a quarter decade from 1e-9 to 1; what is smaller counts for the first. */
-static void count_bins(const lq_certificate *c, int stage, double *x, double *y) {
+static void count_bins(const lq_sampled *c, int stage, double *x, double *y) {
     const size_t values = c->points * (size_t)c->request.kind->channel_count;
     for (int b = 0; b < BINS; b++) {
         x[b] = pow(10.0, (b + 0.5) / 4.0 - 9.0);
@@ -84,7 +84,7 @@ static void count_bins(const lq_certificate *c, int stage, double *x, double *y)
             y[b] = NAN; /* an empty stretch is not drawn */
 }
 
-lq_status lq_report_histogram(const lq_certificate *c, FILE *out, lq_error *error) {
+lq_status lq_report_histogram(const lq_sampled *c, FILE *out, lq_error *error) {
     double x[LQ_STAGES_MAX][BINS], y[LQ_STAGES_MAX][BINS];
     lq_plot_line series[LQ_STAGES_MAX];
     for (int s = 0; s < c->request.stage_count; s++) {

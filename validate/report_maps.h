@@ -10,9 +10,9 @@
 extern const char lq_report_map_style[];
 
 /* Largest |decoded - exact| of the last stage in cells over two axes, as an <svg> element. */
-void lq_report_map(const lq_certificate *certificate, int axis_x, int axis_y, FILE *out);
+void lq_report_map(const lq_sampled *certificate, int axis_x, int axis_y, FILE *out);
 
 /* Share of the points against |d|, one curve a stage, as an <svg> element. */
-lq_status lq_report_histogram(const lq_certificate *certificate, FILE *out, lq_error *error);
+lq_status lq_report_histogram(const lq_sampled *certificate, FILE *out, lq_error *error);
 
 #endif

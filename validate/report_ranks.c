@@ -34,7 +34,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static void measure(const lq_certificate *c, const lq_factored *cut, double *size, lq_rank *rank) {
+static void measure(const lq_sampled *c, const lq_factored *cut, double *size, lq_rank *rank) {
     const size_t axes = (size_t)c->request.kind->axis_count, step = 1 + c->points / POINTS;
     size_t count = 0;
     double square = 0.0;

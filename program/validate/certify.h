@@ -3,7 +3,7 @@
 #define LACQUER_PROGRAM_VALIDATE_CERTIFY_H
 
 #include "program/verb.h"
-#include "validate/certificate_checks.h"
+#include "validate/certify.h"
 
 enum {
     CERTIFY_FIRST = 300,
@@ -34,13 +34,13 @@ enum {
          "table",                                                                                            \
          "FILE",                                                                                             \
          "the table that a factor file was made from, for its error parts",                                  \
-         CLI_TEXT(validate_request, certify.table),                                                          \
+         CLI_TEXT(validate_request, certify.asked.table),                                                    \
          .modes = CERTIFIED},                                                                                \
         {CERTIFY_PARTS,                                                                                      \
          "parts",                                                                                            \
          NULL,                                                                                               \
          "of a pack: compute those tables anew, for all error parts",                                        \
-         CLI_FLAG(validate_request, certify.parts),                                                          \
+         CLI_FLAG(validate_request, certify.asked.parts),                                                    \
          .modes = CERTIFIED},                                                                                \
         {CERTIFY_JUNIT,                                                                                      \
          "junit",                                                                                            \
@@ -58,15 +58,8 @@ typedef struct certify_request {
     lq_trust trust; /* which recorded NDFs may be opened */
     bool wanted;    /* any of these options, or a budget by norm */
     const char *path;
-    lq_budgets budgets;
-    bool parts;
-    bool has_budget; /* otherwise a pack's own holds */
-    lq_rule domain;  /* --on */
-    const char *table, *junit, *report;
-    size_t points;
-    uint64_t seed;
-    int threads;
-    double tolerance;
+    lq_certifying asked;
+    const char *junit, *report;
     bool json;
 } certify_request;
 
@@ -81,5 +74,7 @@ bool certify_takes_alone(const char *path);
 int validate_certify(const certify_request *request);
 
 void certify_print_text(const lq_certified *certified);
+/* A line each. */
+void certify_print_materials(const lq_certificates *made);
 
 #endif

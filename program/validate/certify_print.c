@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 static void print_head(const lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     const lq_kind *kind = c->request.kind;
     char what[128];
     lq_origin_describe(kind, &certified->subject.origin.settings, what, sizeof what);
@@ -28,7 +28,7 @@ static void print_figures(const char *name, const lq_figures *f) {
 }
 
 static void print_errors(const lq_certified *certified) {
-    const lq_certificate *c = &certified->certificate;
+    const lq_sampled *c = &certified->certificate;
     printf("\n  %-18s %9s %9s %9s %9s  %s\n", "decoded - exact", "max", "p99", "rms", "bias", "p99 (95 %)");
     for (int s = 0; s < c->request.stage_count; s++)
         for (int k = 0; k < c->request.kind->channel_count; k++) {
@@ -49,7 +49,7 @@ static void print_errors(const lq_certified *certified) {
     }
 }
 
-static void print_confidence(const lq_certificate *c) {
+static void print_confidence(const lq_sampled *c) {
     char at[160];
     lq_point_text(c->request.kind, c->found.at, at, sizeof at);
     printf("\n  confidence  p99 rests on %.0f points worth of independence; with 95 %% confidence at most\n"
@@ -79,4 +79,19 @@ void certify_print_text(const lq_certified *certified) {
     print_errors(certified);
     print_confidence(&certified->certificate);
     print_checks(certified);
+}
+
+static void print_material(const lq_certified_material *m) {
+    printf("  %-6s  %-20s %6zu %9.2e %9.2e %9.2e  at", m->kept ? "passed" : "FAILED", m->name,
+           m->measure.points, m->measure.rms, m->measure.p99, m->measure.max);
+    for (int a = 0; a < m->axis_count; a++) printf(" %s=%.3g", m->axes[a], m->measure.worst[a]);
+    putchar('\n');
+}
+
+void certify_print_materials(const lq_certificates *made) {
+    printf("materials: energies and roughness against the exact stack, mu >= %g\n"
+           "  %-6s  %-20s %6s %9s %9s %9s\n",
+           LQ_MATERIAL_FROM, "", "material", "points", "rms", "p99", "max");
+    for (size_t i = 0; i < made->material_count; i++) print_material(&made->materials[i]);
+    putchar('\n');
 }

@@ -221,7 +221,7 @@ static bool parse(validate_request *request, int argc, char **argv) {
     *request = (validate_request){.samples = 100000, .points = 256, .seed = 1, .layout = -1};
     request->settings = cli_settings_default();
     request->light = cli_light_default();
-    request->certify.budgets.count = 1;
+    request->certify.asked.budgets.count = 1;
     if (!cli_parse(&cli_verb_validate, argc, argv, request, take_word, &request->given)) return false;
     if (request->file && is_layered(request) && !cli_given_text(&request->given, SAMPLES))
         request->samples = 1000000;
@@ -278,12 +278,12 @@ static int certify(validate_request *request) {
             "a certificate is made against the solver; drop --against, --layout, --axes and --diagnose, "
             "or the budget by norm");
     c->path = request->file;
-    c->points = request->points_given ? request->points : 0;
-    c->seed = request->seed;
-    c->threads = (int)request->threads;
+    c->asked.points = request->points_given ? request->points : 0;
+    c->asked.seed = request->seed;
+    c->asked.threads = (int)request->threads;
     c->json = request->json;
-    if (request->budget > 0.0) c->budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
-    c->has_budget |= request->budget > 0.0;
+    if (request->budget > 0.0) c->asked.budgets.rules[0].budget.bound[LQ_NORM_MAX] = request->budget;
+    c->asked.has_budget |= request->budget > 0.0;
     return validate_certify(c);
 }
 

@@ -1,0 +1,70 @@
+/* certify_materials.c - the materials of a scene's pack, solved anew where a shader may ask. */
+#include "system/status.h"
+#include "validate/certify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A set of parameters has 48 cosines. Sets of few points would check little, many take minutes. */
+enum { POINTS_PER_SET = 1000, FEWEST_SETS = 4, MOST_SETS = 64 };
+
+static const double EXACT = 1e-4;
+
+static lq_budget budget_for(const lq_certifying *asked, const lq_shipped_material *m) {
+    lq_budget budget = {0};
+    if (asked->has_budget) return lq_budgets_rule(&asked->budgets, m->name, "material")->budget;
+    for (int n = 0; n < LQ_NORMS; n++) budget.bound[n] = INFINITY;
+    budget.bound[LQ_NORM_P99] = m->lobes.p99;
+    budget.bound[LQ_NORM_MAX] = m->lobes.max;
+    return budget;
+}
+
+static bool keeps(const lq_budget *budget, const lq_lobes_measure *m) {
+    const double p99 = budget->bound[LQ_NORM_P99], max = budget->bound[LQ_NORM_MAX];
+    const double rms = budget->bound[LQ_NORM_RMS];
+    return !(p99 > 0.0 && m->p99 > p99) && !(max > 0.0 && m->max > max) && !(rms > 0.0 && m->rms > rms);
+}
+
+static lq_status solve(const lq_certifying *asked, const lq_pack *pack, const lq_material **materials,
+                       lq_lobes_exact *exact, lq_error *error) {
+    const size_t wanted = asked->points / POINTS_PER_SET;
+    const size_t sets = wanted < FEWEST_SETS ? FEWEST_SETS : wanted > MOST_SETS ? MOST_SETS : wanted;
+    lq_step step;
+    for (size_t i = 0; i < pack->material_count; i++) materials[i] = &pack->materials[i].material;
+    lq_step_begin(&step, &asked->watch, "materials");
+    const lq_status status = lq_lobes_exact_make(exact, materials, pack->material_count, sets, -1, EXACT,
+                                                 asked->threads, &step.progress, error);
+    lq_step_end(&step);
+    return status;
+}
+
+static lq_status judge(const lq_certifying *asked, const lq_lobes_exact *exact, size_t i,
+                       const lq_shipped_material *shipped, lq_certified_material *made, lq_error *error) {
+    const lq_budget budget = budget_for(asked, shipped);
+    const lq_status status = lq_lobes_measure_one(exact, i, &shipped->lobes, &made->measure, error);
+    snprintf(made->name, sizeof made->name, "%s", shipped->name);
+    made->axis_count = 1 + shipped->material.range_count;
+    for (int a = 0; a < made->axis_count; a++)
+        snprintf(made->axes[a], sizeof made->axes[a], "%s",
+                 a == 0 ? "mu" : shipped->material.ranges[a - 1].name);
+    made->kept = status == LQ_OK && keeps(&budget, &made->measure);
+    return status;
+}
+
+lq_status lq_certify_materials(const lq_certifying *asked, const lq_pack *pack, lq_certificates *made,
+                               lq_error *error) {
+    const size_t count = pack->material_count;
+    lq_lobes_exact exact = {0};
+    if (count == 0) return LQ_OK;
+    const lq_material **materials = malloc(count * sizeof *materials);
+    made->materials = calloc(count, sizeof *made->materials);
+    lq_status status = materials && made->materials ? solve(asked, pack, materials, &exact, error)
+                                                    : lq_fail(error, LQ_NO_MEMORY, "out of memory");
+    for (size_t i = 0; i < count && status == LQ_OK; i++)
+        status = judge(asked, &exact, i, &pack->materials[i], &made->materials[i], error);
+    if (status == LQ_OK) made->material_count = count;
+    lq_lobes_exact_free(&exact);
+    free(materials);
+    return status;
+}
