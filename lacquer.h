@@ -16,7 +16,27 @@
 extern "C" {
 #endif
 
+/* Of the shared library, what this header declares is visible and nothing else is. */
+#if defined(__GNUC__)
+#pragma GCC visibility push(default)
+#endif
+
+/* Threads. The library keeps no state of its own between calls, so several threads may call it at once, on
+ * different objects or reading the same one; an object that a call changes or frees belongs to one thread. A
+ * call that takes `threads` starts that many of its own (0: one per core, or what OMP_NUM_THREADS says), for
+ * as long as it runs, and gives the same bits for any number. Two things are of the process: while tables are
+ * factored (lq_pca, lq_pca_search, lq_pack_make) OpenBLAS works on one thread a call, for everybody, and is
+ * set back when the last of these calls ends; and an NDF plugin is loaded once, and its functions are called
+ * from any thread. */
+
+/* Options. A struct that begins with `struct_size` may grow at its end in later versions. Start from its
+ * _default function, or set struct_size to sizeof and the rest to 0: a program that was compiled with an
+ * older header works with a newer library, which takes what it does not know of as the default. */
+
 #define LQ_VERSION "0.1.0"
+
+/* That of the library that runs: LQ_VERSION is that of the header. */
+const char *lq_version(void);
 
 /* ======================================================================================
  *                                  Status and messages
@@ -849,6 +869,10 @@ enum { LQ_STACK_WALK_PATHS = 4 };
  * hits; it is missing from every mean, and `light.error` is the energy that such rays carried. */
 lq_status lq_stack_walk(const lq_stack *stack, const lq_stack_query *query, size_t samples, size_t seed,
                         lq_stack_walked *walked, const lq_progress *progress, lq_error *error);
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,7 @@ add_executable(lacquer-fuzz ${fuzz_readers} ${fuzz_engine} $<TARGET_OBJECTS:lacq
 lacquer_warnings(lacquer-fuzz)
 target_compile_definitions(lacquer-fuzz PRIVATE ${system_interfaces})
 target_include_directories(lacquer-fuzz PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(lacquer-fuzz PRIVATE lacquer-library PkgConfig::JANSSON OpenMP::OpenMP_C m)
+target_link_libraries(lacquer-fuzz PRIVATE lacquer-inside PkgConfig::JANSSON OpenMP::OpenMP_C m)
 if(LACQUER_FUZZ)
   target_link_options(lacquer-fuzz PRIVATE -fsanitize=fuzzer)
 else()

@@ -29,7 +29,7 @@ foreach(source IN LISTS test_programs)
   lacquer_warnings(${name})
   target_compile_definitions(${name} PRIVATE ${system_interfaces})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${RANDOM123_INCLUDE_DIR})
-  target_link_libraries(${name} PRIVATE lacquer-library PkgConfig::CMOCKA PkgConfig::JANSSON PkgConfig::CAIRO
+  target_link_libraries(${name} PRIVATE lacquer-inside PkgConfig::CMOCKA PkgConfig::JANSSON PkgConfig::CAIRO
                                         OpenEXR::OpenEXRCore ZLIB::ZLIB OpenMP::OpenMP_C m)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   lacquer_test_properties(${name})

@@ -28,5 +28,8 @@ void lq_bytes_texels(lq_bytes *bytes, const lq_image *image);
 void lq_ktx2_encode(lq_bytes *bytes, const lq_image *image, bool compressed);
 void lq_dds_encode(lq_bytes *bytes, const lq_image *image);
 void lq_half_exr_encode(lq_bytes *bytes, const lq_image *image);
+void lq_npy_encode(lq_bytes *bytes, const lq_image *image);
+/* `name` is that of the array. */
+void lq_c_encode(lq_bytes *bytes, const lq_image *image, const char *name);
 
 #endif

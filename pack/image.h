@@ -30,6 +30,8 @@ typedef enum lq_container {
 /* "ktx2", "ktx2-zstd", ... and what its files end in. */
 const char *lq_container_name(lq_container container);
 const char *lq_container_ending(lq_container container);
+/* What a manifest says of them. */
+const char *lq_container_format(lq_container container);
 
 /* An image of zeros. */
 lq_status lq_image_create(lq_image *image, size_t width, size_t height, size_t depth, size_t layers,

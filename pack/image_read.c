@@ -1,5 +1,5 @@
 /* image_read.c - the texels of an image back from any of its containers. */
-#include "pack/image.h"
+#include "pack/image_read.h"
 
 #include "system/input.h"
 #include "system/status.h"
@@ -8,7 +8,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <zstd.h>
 
 enum { RGBA = 4 };
@@ -127,25 +126,18 @@ static lq_status read_numbers(lq_image *image, bool exr, const char *path, lq_er
     return status;
 }
 
-/* Halves take two bytes, numbers of a text a digit and a comma. zstd has at its densest 128 KiB in four
- * bytes, deflate 1032 in one. */
-size_t lq_image_capacity(lq_container container, const char *path) {
-    enum { ZSTD_DENSEST = (128 << 10) / 4, DEFLATE_DENSEST = 1032, VALUE = 2 };
-    struct stat info;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return 0;
-    const size_t values = (size_t)info.st_size / VALUE + 1;
-    const bool zstd = container == LQ_CONTAINER_KTX2 || container == LQ_CONTAINER_KTX2_ZSTD;
-    return values * (zstd ? ZSTD_DENSEST : container == LQ_CONTAINER_EXR ? DEFLATE_DENSEST : 1);
+lq_status lq_ktx2_decode(lq_image *image, const char *path, lq_error *error) {
+    return read_binary(image, false, path, error);
 }
 
-lq_status lq_image_read(lq_image *image, lq_container container, const char *path, lq_error *error) {
-    switch (container) {
-    case LQ_CONTAINER_KTX2:
-    case LQ_CONTAINER_KTX2_ZSTD:
-        return read_binary(image, false, path, error);
-    case LQ_CONTAINER_DDS:
-        return read_binary(image, true, path, error);
-    default:
-        return read_numbers(image, container == LQ_CONTAINER_EXR, path, error);
-    }
+lq_status lq_dds_decode(lq_image *image, const char *path, lq_error *error) {
+    return read_binary(image, true, path, error);
+}
+
+lq_status lq_half_exr_decode(lq_image *image, const char *path, lq_error *error) {
+    return read_numbers(image, true, path, error);
+}
+
+lq_status lq_numbers_decode(lq_image *image, const char *path, lq_error *error) {
+    return read_numbers(image, false, path, error);
 }

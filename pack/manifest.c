@@ -15,38 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t lq_packed_images(const lq_packed *packed) {
-    return packed->factored ? packed->factors.count : 1;
-}
-
-const lq_image *lq_packed_image(const lq_packed *packed, size_t i) {
-    return packed->factored ? &packed->factors.bases[i].image : &packed->texture.image;
-}
-
-int lq_packed_channels(const lq_packed *packed, size_t i) {
-    if (!packed->factored) return packed->texture.channel_count;
-    const lq_bases *bases = &packed->factors.bases[i];
-    const size_t count = packed->factored->pieces[bases->piece].factors[bases->factor].base_count;
-    return (int)((count - 1) % LQ_BASES_PER_LAYER) + 1;
-}
-
-void lq_packed_stem(const lq_packed *packed, size_t i, char *stem, size_t size) {
-    if (packed->factored) snprintf(stem, size, "%s.%s", packed->from->name, packed->factors.bases[i].suffix);
-    else snprintf(stem, size, "%s", packed->from->name);
-}
-
-void lq_packed_array(const lq_packed *packed, size_t i, char *array, size_t size) {
-    if (packed->factored)
-        snprintf(array, size, "lacquer_%s_%s_texels", packed->factors.name, packed->factors.bases[i].suffix);
-    else snprintf(array, size, "lacquer_%s_texels", packed->texture.name);
-}
-
-size_t lq_packed_bytes(const lq_packed *packed) {
-    size_t bytes = 0;
-    for (size_t i = 0; i < lq_packed_images(packed); i++) bytes += lq_image_bytes(lq_packed_image(packed, i));
-    return bytes;
-}
-
 static json_t *number(double value) {
     return json_pack("f", value);
 }
@@ -60,19 +28,12 @@ static json_t *describe_axis(const lq_axis *axis, int a) {
 }
 
 static json_t *describe_stem(const lq_recipe *recipe, const char *stem, json_t *sums) {
-    static const char *const hints[LQ_CONTAINERS] = {
-        "KTX 2.0",
-        "KTX 2.0, zstd",
-        "DDS, DX10 block",
-        "OpenEXR RGBA half, slices side by side, layers below each other",
-        "NumPy, first axis fastest (last index before the channels)",
-        "C array"};
     json_t *files = json_array();
     char name[96];
     for (int c = 0; c < LQ_CONTAINERS; c++) {
         if (!recipe->containers[c]) continue;
         snprintf(name, sizeof name, "%s%s", stem, lq_container_ending((lq_container)c));
-        json_t *item = json_pack("{s:s, s:s}", "file", name, "format", hints[c]);
+        json_t *item = json_pack("{s:s, s:s}", "file", name, "format", lq_container_format((lq_container)c));
         json_t *sum = json_object_get(sums, name);
         if (sum) lq_json_set(&item, "crc32", json_incref(sum));
         lq_json_append(&files, item);

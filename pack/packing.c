@@ -1,11 +1,44 @@
 /* packing.c - what a pack holds, put together: the atlas and the decode source. */
 #include "pack/manifest.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "system/output.h"
 #include "system/status.h"
+
+size_t lq_packed_images(const lq_packed *packed) {
+    return packed->factored ? packed->factors.count : 1;
+}
+
+const lq_image *lq_packed_image(const lq_packed *packed, size_t i) {
+    return packed->factored ? &packed->factors.bases[i].image : &packed->texture.image;
+}
+
+int lq_packed_channels(const lq_packed *packed, size_t i) {
+    if (!packed->factored) return packed->texture.channel_count;
+    const lq_bases *bases = &packed->factors.bases[i];
+    const size_t count = packed->factored->pieces[bases->piece].factors[bases->factor].base_count;
+    return (int)((count - 1) % LQ_BASES_PER_LAYER) + 1;
+}
+
+void lq_packed_stem(const lq_packed *packed, size_t i, char *stem, size_t size) {
+    if (packed->factored) snprintf(stem, size, "%s.%s", packed->from->name, packed->factors.bases[i].suffix);
+    else snprintf(stem, size, "%s", packed->from->name);
+}
+
+void lq_packed_array(const lq_packed *packed, size_t i, char *array, size_t size) {
+    if (packed->factored)
+        snprintf(array, size, "lacquer_%s_%s_texels", packed->factors.name, packed->factors.bases[i].suffix);
+    else snprintf(array, size, "lacquer_%s_texels", packed->texture.name);
+}
+
+size_t lq_packed_bytes(const lq_packed *packed) {
+    size_t bytes = 0;
+    for (size_t i = 0; i < lq_packed_images(packed); i++) bytes += lq_image_bytes(lq_packed_image(packed, i));
+    return bytes;
+}
 
 int lq_packing_languages(const lq_recipe *recipe) {
     return recipe->atlas ? LQ_LANGUAGES : LQ_SOURCE_LANGUAGES;

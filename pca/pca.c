@@ -6,6 +6,7 @@
 #include "pca/factors.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
+#include "system/extend.h"
 #include "system/parallel.h"
 #include "system/status.h"
 
@@ -86,13 +87,7 @@ static lq_status check_critical(const lq_table *table, const lq_pca_options *opt
 lq_status lq_pca_options_read(lq_pca_options *options, const lq_pca_options *given, lq_error *error) {
     const size_t first = offsetof(lq_pca_options, splits) + sizeof given->splits; /* version 0.1.0 */
     *options = lq_pca_options_default();
-    if (given->struct_size < first || given->struct_size > sizeof *options)
-        return lq_fail(error, LQ_BAD_INPUT,
-                       "options of another version, of %zu bytes; start from lq_pca_options_default()",
-                       given->struct_size);
-    memcpy(options, given, given->struct_size);
-    options->struct_size = sizeof *options;
-    return LQ_OK;
+    return lq_extend(options, sizeof *options, given, first, "factor options", error);
 }
 
 lq_status lq_pca_check_splits(const lq_table *table, const lq_pca_options *options, lq_error *error) {

@@ -19,9 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "system/blas.h"
 #include "pca/normal.h"
 #include "pca/refine_lines.h"
+#include "system/blas.h"
 #include "system/status.h"
 
 enum { CHUNK = 32 }; /* rows or columns a thread takes at a time: fixed, whatever the number of threads */

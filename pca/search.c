@@ -7,6 +7,7 @@
  * one chosen is fitted in full.
  */
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 #include "pca/measure.h"
 #include "pca/piece.h"
 #include "pca/refine.h"
+#include "system/extend.h"
 #include "system/parallel.h"
 #include "system/status.h"
 
@@ -311,11 +313,13 @@ lq_status lq_pca_search(const lq_table *table, int channel, const lq_pca_options
     *factored = NULL;
     *tries = NULL;
     *try_count = 0;
-    if (goal->struct_size != sizeof *goal || !(goal->budget > 0.0 || goal->bytes > 0))
-        return lq_fail(error, LQ_BAD_INPUT, "a search needs a budget or a number of bytes");
-    lq_pca_goal each = *goal;
+    lq_pca_goal each = {.struct_size = sizeof each};
     search s = {.table = table, .channel = channel, .goal = &each, .progress = progress, .error = error};
-    s.status = lq_pca_options_read(&o, start, error);
+    s.status = lq_extend(&each, sizeof each, goal, offsetof(lq_pca_goal, user) + sizeof goal->user,
+                         "a search's goal", error);
+    if (s.status == LQ_OK && !(each.budget > 0.0 || each.bytes > 0))
+        s.status = lq_fail(error, LQ_BAD_INPUT, "a search needs a budget or a number of bytes");
+    if (s.status == LQ_OK) s.status = lq_pca_options_read(&o, start, error);
     if (s.status == LQ_OK) s.status = lq_pca_check_splits(table, &o, error);
     if (s.status == LQ_OK) s.status = lq_pca_check_table(table, channel, error);
     const int pieces = s.status == LQ_OK ? o.split_count + 1 : 1;

@@ -3,6 +3,7 @@
 
 #include "precompute/kinds.h"
 #include "system/status.h"
+#include "tables/settings.h"
 
 #include <math.h>
 #include <string.h>
@@ -98,8 +99,6 @@ void lq_job_free(lq_job *job) {
 
 static lq_status check_options(const lq_kind *kind, const lq_settings *settings, lq_error *error) {
     const lq_settings plain = lq_settings_default();
-    if (settings->struct_size != sizeof *settings)
-        return lq_fail(error, LQ_BAD_INPUT, "settings of another version; start from lq_settings_default()");
     if (!(kind->takes & LQ_TAKES_SCATTERING) && settings->scattering != plain.scattering)
         return lq_fail(error, LQ_BAD_INPUT, "%s takes no scattering option", kind->id);
     if (!(kind->takes & LQ_TAKES_MASKING) && settings->masking != plain.masking)
@@ -121,14 +120,19 @@ static lq_status choose_tolerance(lq_job *job, double asked, lq_error *error) {
     return LQ_OK;
 }
 
-lq_status lq_job_make(lq_job *job, const lq_kind *kind, const lq_settings *settings, const size_t *size,
+lq_status lq_job_make(lq_job *job, const lq_kind *kind, const lq_settings *given, const size_t *size,
                       const double *const *nodes, lq_error *error) {
+    lq_settings read;
+    const lq_settings *settings = &read;
+    *job = (lq_job){.kind = kind};
+    lq_status status = lq_settings_read(&read, given, error);
+    if (status != LQ_OK) return status;
     *job = (lq_job){.kind = kind, .scattering = settings->scattering, .masking = settings->masking};
     for (int a = 0; a < kind->axis_count; a++) {
         job->size[a] = size[a];
         job->nodes[a] = nodes[a];
     }
-    lq_status status = check_options(kind, settings, error);
+    status = check_options(kind, settings, error);
     if (status == LQ_OK) status = choose_ndf(job, settings, error);
     if (status == LQ_OK) status = choose_tolerance(job, settings->tolerance, error);
     if (status == LQ_OK) status = check_nodes(job, error);

@@ -11,15 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-lq_settings lq_settings_default(void) {
-    return (lq_settings){.struct_size = sizeof(lq_settings),
-                         .ndf = "ggx",
-                         .scattering = LQ_MULTIPLE,
-                         .masking = LQ_CORRELATED,
-                         .tolerance = 0.0,
-                         .threads = 0};
-}
-
 lq_status lq_eval(const lq_kind *kind, const lq_settings *settings, const double *point, double *values,
                   double *estimate, lq_error *error) {
     const lq_evaluator *evaluator = lq_evaluator_find(kind->id);

@@ -59,7 +59,7 @@ void lq_facts_free(lq_fact *facts, size_t count) {
 lq_status lq_table_set_number(lq_table *table, const char *key, double value, lq_error *error) {
     char text[32];
     lq_print(text, sizeof text, "%.3g", value);
-    return lq_table_set_fact(table, key, text, error);
+    return lq_facts_set(&table->facts, &table->fact_count, key, text, error);
 }
 
 lq_status lq_table_set_bound(lq_table *table, const char *key, double value, lq_error *error) {

@@ -160,7 +160,7 @@ static size_t place(const lq_table *table, lq_layout layout, size_t i) {
 static lq_status read_plain_axes(lq_bytes *file, const char *path, const lq_stored *what, lq_axis *axes,
                                  lq_error *error) {
     int32_t size[4];
-    uint64_t wide[4];
+    uint64_t wide[4] = {0};
     float range[4][2];
     const size_t count = (size_t)what->axis_count;
     if (!lq_published_take(file, size, count * sizeof size[0]) ||

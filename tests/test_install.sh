@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs into an empty prefix and builds small programs against it, outside the tree: through pkg-config (the
-# example of the README too) and through find_package. First the library as it was built, then a shared one.
+# example of the README too) and through find_package; one makes a pack, certifies it and reads it. First the library as it was built, then a shared one.
 set -euo pipefail
 : "${LACQUER_BUILD:?build folder}" "${LACQUER_SOURCE:?source folder}"
 cmake=${CMAKE_COMMAND:-cmake}
@@ -28,6 +28,10 @@ int main(void) {
     return fabs(value - 0.93688) < 1e-4 ? 0 : 2; /* random walks of 2e7 samples */
 }
 END
+cat >recipe.json <<'END'
+{"name": "small", "formats": ["dds"], "points": 200, "budget": {"max": 5e-3},
+ "tables": [{"table": "albedo", "axes": {"mu": "0.02:1:32:sqrt", "alpha": "0.02:1:32:sqrt"}, "tolerance": 1e-4}]}
+END
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$LACQUER_SOURCE/README.md" >readme.c
 cat >CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
@@ -47,6 +51,11 @@ try() { # PREFIX
     # shellcheck disable=SC2046
     "$cc" readme.c -o readme $(PKG_CONFIG_PATH=$libdir pkg-config --cflags --libs lacquer)
     LD_LIBRARY_PATH=${libdir%/pkgconfig} ./readme | grep -q '^0\.93[0-9]* ± '
+    # shellcheck disable=SC2046
+    "$cc" "$LACQUER_SOURCE/tests/consumers/pack_user.c" -o pack-user \
+        $(PKG_CONFIG_PATH=$libdir pkg-config --cflags --libs lacquer) -lm
+    rm -rf made
+    LD_LIBRARY_PATH=${libdir%/pkgconfig} ./pack-user recipe.json made
     "$cmake" -S . -B "$1-user" -G Ninja -DCMAKE_PREFIX_PATH="$1" -DCMAKE_C_COMPILER="$cc" >log 2>&1 || {
         cat log
         return 1
@@ -70,3 +79,14 @@ try "$work/moved"
 }
 "$cmake" --install shared-build --prefix "$work/shared" >/dev/null
 try "$work/shared"
+
+# What the shared library shows is what its header declares, and nothing else; GCC shares the locks of OpenMP's named
+# sections between libraries.
+"$cc" -E -P -I "$LACQUER_SOURCE" -x c - <<<'#include "lacquer.h"' | tr '\n' ' ' | sed 's/[;{}]/\n/g' |
+    grep -oE '\b(lq|lacquer)_[a-z0-9_]+ *\([^*]' | sed 's/ *(.*//' | grep -v '^lacquer_ndf_plugin$' | sort -u >declared
+nm -D --defined-only "$(find shared -name 'liblacquer.so' | head -1)" | awk '$2 ~ /[TDBRVW]/ && $3 !~ /^\.gomp_critical/ { print $3 }' | sort -u >shown
+diff declared shown || {
+    echo "FAILED: the shared library shows (>) what lacquer.h does not declare, or lacks (<) what it does" >&2
+    exit 1
+}
+[ "$(wc -l <shown)" -gt 80 ]

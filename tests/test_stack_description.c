@@ -100,8 +100,7 @@ static void test_sets(void **state) {
 static const char *const refusals[][2] = {
     {"", "a.json:1: not JSON: '[' or '{' expected near end of file"},
     {"{\"layers\":\n[NaN]}", "a.json:2: not JSON: invalid token near 'NaN'"},
-    {"{\"name\": \"a\",\n\"name\": \"b\"}",
-     "a.json:2: not JSON: duplicate object key near '\"name\"'"},
+    {"{\"name\": \"a\",\n\"name\": \"b\"}", "a.json:2: not JSON: duplicate object key near '\"name\"'"},
     {"[]", "a.json: line 1: no object; accepted: {\"layers\": [...]}"},
     {"{\n\"name\": 3}", "a.json: line 2: name is no text of at most 127 bytes"},
     {"{\n\"layer\": 3}", "a.json: line 2: unknown key 'layer'; accepted: name, layers"},

@@ -21,11 +21,13 @@ typedef struct lq_certifying {
     lq_watch watch;
 } lq_certifying;
 
+enum { LQ_CERTIFIED_AXIS = 48 }; /* as long as the name of a range */
+
 /* One material of a pack, solved anew where a shader may ask. */
 typedef struct lq_certified_material {
     char name[LQ_NAME_SIZE];
     int axis_count; /* mu, then the ranges of the material */
-    char axes[LQ_LOBES_AXES][LQ_NAME_SIZE];
+    char axes[LQ_LOBES_AXES][LQ_CERTIFIED_AXIS];
     lq_lobes_measure measure;
     bool kept; /* its budget */
 } lq_certified_material;
