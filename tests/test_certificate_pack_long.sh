@@ -2,18 +2,7 @@
 # Certificates of packs: what `lacquer pack` made passes within its own budget; one texel changed by 2 % (inside, on
 # an edge, in a corner), another masking, texels half a cell off, a container that differs, a file that was altered
 # or is cut short are found and named.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-root=$PWD
-lacquer=${LACQUER:-$root/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 
 recipe() { # NAME FORMATS MASKING
     cat <<END_OF_RECIPE

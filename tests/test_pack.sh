@@ -1,19 +1,7 @@
 #!/usr/bin/env bash
 # lacquer pack: same bytes for any thread count and from the cache, complete or untouched, one line on bad recipes,
 # the shipped C source against the exact integral, EXR read by OpenEXR's own tools.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-root=$PWD
-lacquer=${LACQUER:-$root/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-export XDG_CACHE_HOME=$scratch/xdg
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 
 cat >small.json <<'END'
 {

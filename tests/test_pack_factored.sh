@@ -1,16 +1,7 @@
 #!/usr/bin/env bash
 # Factored tables from a recipe to a pack: the same bytes for one and two threads, the shipped C and the published
 # binaries against the exact solver, what the manifest says, refusals.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-lacquer=${LACQUER:-$PWD/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 cat >small.json <<'END_OF_RECIPE'
 {
   "name": "factored",

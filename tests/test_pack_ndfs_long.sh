@@ -1,17 +1,7 @@
 #!/usr/bin/env bash
 # Packs with every built-in NDF, a sampled one and a measured one of a single roughness: made, decoded and certified with no
 # other change; where an NDF has no f, one line says so.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-lacquer=${LACQUER:-$PWD/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 
 # GGX and a column of its own, by their formula.
 awk 'BEGIN {

@@ -1,18 +1,7 @@
 #!/usr/bin/env bash
 # lacquer pack never removes what is not its own: foreign folders, added or changed files, links; signals and kills
 # leave no staging folder behind.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-lacquer=${LACQUER:-$PWD/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-export XDG_CACHE_HOME=$scratch/xdg
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 
 cat >small.json <<'END'
 {"name": "small", "formats": ["npy", "c"], "points": 100,
