@@ -371,6 +371,13 @@ lq_status lq_mitsuba_axes(lq_axis *axes, lq_error *error);
 lq_status lq_mitsuba_precompute(const lq_settings *settings, const lq_axis *axes, const lq_progress *progress,
                                 const char *path, size_t *entries, double *estimate, lq_error *error);
 
+/* What made a table, from its facts: its kind, and settings that compute the same again.
+ * `trust` (may be NULL) says which recorded NDF may be opened. settings->ndf points into the facts or the
+ * trust. LQ_BAD_INPUT: an NDF that is not trusted. LQ_FORMAT: a fact is missing or unknown, or axes and
+ * channels are not those of the kind. */
+lq_status lq_table_settings(const lq_table *table, const lq_trust *trust, const lq_kind **kind,
+                            lq_settings *settings, lq_error *error);
+
 /* The default axes of a kind. Free each with lq_axis_free. */
 lq_status lq_kind_axes(const lq_kind *kind, lq_axis *axes, lq_error *error);
 /* The same for the NDF of these settings: where it has only some roughnesses, alpha runs over those, and
@@ -381,6 +388,13 @@ lq_status lq_settings_axes(const lq_kind *kind, const lq_settings *settings, lq_
  * over all orders is FGD-infinity. point: mu, alpha, n, kappa. */
 lq_status lq_eval_orders(const lq_settings *settings, const double *point, size_t count, double *energies,
                          lq_error *error);
+
+/* The same value by random walks on the microsurface (H16), which share the NDF and the Fresnel equations
+ * with the solvers and nothing else: `values` gets one mean a channel of `samples` walks (at least 2),
+ * `noise` its standard error, where rare events that no walk may have met count as well. They depend on
+ * `seed`, never on threads. LQ_BAD_INPUT: a point outside the kind, an NDF that is not there. */
+lq_status lq_eval_walk(const lq_kind *kind, const lq_settings *settings, const double *point, size_t samples,
+                       unsigned long long seed, double *values, double *noise, lq_error *error);
 
 /* ======================================================================================
  *                                   Factored tables

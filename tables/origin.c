@@ -103,3 +103,14 @@ void lq_origin_describe(const lq_kind *kind, const lq_settings *settings, char *
                                                                         : ", correlated masking";
     snprintf(text, size, "%s, %s%s%s", kind->id, settings->ndf, scattering, masking);
 }
+
+lq_status lq_table_settings(const lq_table *table, const lq_trust *trust, const lq_kind **kind,
+                            lq_settings *settings, lq_error *error) {
+    lq_origin origin;
+    const lq_trust none = {0};
+    const lq_status status = lq_origin_of(table, trust ? trust : &none, &origin, error);
+    if (status != LQ_OK) return status;
+    *kind = origin.kind;
+    *settings = origin.settings;
+    return LQ_OK;
+}

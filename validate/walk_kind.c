@@ -3,6 +3,7 @@
 
 #include "microfacet/lobe.h"
 #include "system/status.h"
+#include "tables/settings.h"
 #include "validate/walk_lobe.h"
 
 #include <math.h>
@@ -195,4 +196,18 @@ lq_status lq_walk_kind(const lq_kind *kind, const lq_settings *settings, const d
 
 double lq_walk_noise(lq_walk_mean mean, size_t samples) {
     return hypot(mean.error, 3.0 / (double)samples);
+}
+
+lq_status lq_eval_walk(const lq_kind *kind, const lq_settings *settings, const double *point, size_t samples,
+                       unsigned long long seed, double *values, double *noise, lq_error *error) {
+    lq_settings s;
+    lq_walk_mean means[LQ_MAX_CHANNELS];
+    lq_status status = lq_settings_read(&s, settings, error);
+    const lq_walk_run run = {.samples = samples, .seed = seed, .threads = s.threads};
+    if (status == LQ_OK) status = lq_walk_kind(kind, &s, point, &run, means, error);
+    for (int c = 0; c < kind->channel_count && status == LQ_OK; c++) {
+        values[c] = means[c].mean;
+        noise[c] = lq_walk_noise(means[c], samples);
+    }
+    return status;
 }
