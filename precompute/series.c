@@ -73,15 +73,25 @@ static double largest_coefficient(const lq_series *s, const double *const *at_no
     return most;
 }
 
-double lq_series_missing(const lq_series *s, const double *const *at_node, size_t count) {
+void lq_series_tail_add(lq_series_tail *tail, const lq_series *s, const double *const *at_node,
+                        size_t count) {
     enum { RUN = 3 };
-    double older = 0.0, newer = 0.0;
     for (size_t m = s->nodes - 2 * RUN; m < s->nodes; m++) {
-        double *run = m + RUN < s->nodes ? &older : &newer;
+        double *run = m + RUN < s->nodes ? &tail->older : &tail->newer;
         *run = fmax(*run, largest_coefficient(s, at_node, count, m));
     }
-    /* The last run may be small by chance, all of it: three coefficients fade by 8 where rho is 2. What does
-     * not fade is the noise of the values. */
+}
+
+/* The last run may be small by chance, all of it: three coefficients fade by 8 where rho is 2. What does not
+ * fade is the noise of the values. */
+double lq_series_tail_missing(const lq_series_tail *tail) {
+    const double older = tail->older, newer = tail->newer;
     const double fading = older > 0.0 ? fmin(fmax(newer / older, 1.0 / 8.0), 1.0) : 1.0;
     return 2.0 * fading * fmax(newer, older / 8.0);
+}
+
+double lq_series_missing(const lq_series *s, const double *const *at_node, size_t count) {
+    lq_series_tail tail = {0.0, 0.0};
+    lq_series_tail_add(&tail, s, at_node, count);
+    return lq_series_tail_missing(&tail);
 }

@@ -31,4 +31,14 @@ double lq_series_truncation(const lq_series *series, const double *at_node, size
  * functions without kinks: of one it says too little. At least LQ_SERIES_MIN nodes. */
 double lq_series_missing(const lq_series *series, const double *const *at_node, size_t count);
 
+/* The same in steps, of values that are not all there at once: the largest of the last three coefficients and
+ * of the three before, starting from {0}. */
+typedef struct lq_series_tail {
+    double older, newer;
+} lq_series_tail;
+
+void lq_series_tail_add(lq_series_tail *tail, const lq_series *series, const double *const *at_node,
+                        size_t count);
+double lq_series_tail_missing(const lq_series_tail *tail);
+
 #endif

@@ -85,14 +85,20 @@ static int above_streams(int file) {
     return higher;
 }
 
-/* The unnamed file, if it can be named later on: that takes /proc. */
-static int open_unnamed(const char *target) {
-    char folder[PATH_MAX], link[64];
+/* A file without a name in the folder of `target`. */
+static int open_nameless(const char *target, int access) {
+    char folder[PATH_MAX];
     size_t length = folder_length(target);
     if (length >= sizeof folder) return -1;
     memcpy(folder, target, length);
     memcpy(folder + length, length ? "" : ".", length ? 1 : 2);
-    int file = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    return open(folder, O_TMPFILE | access | O_CLOEXEC, 0666);
+}
+
+/* The unnamed file, if it can be named later on: that takes /proc. */
+static int open_unnamed(const char *target) {
+    char link[64];
+    int file = open_nameless(target, O_WRONLY);
     if (file < 0) return -1;
     snprintf(link, sizeof link, "/proc/self/fd/%d", file);
     if (access(link, F_OK) == 0) return file;
@@ -309,6 +315,18 @@ void lq_output_abandon(lq_output *output) {
     free(output->target);
     free(output->path);
     free(output);
+}
+
+lq_status lq_output_scratch(int *file, const char *beside, lq_error *error) {
+    lq_output *output;
+    *file = above_streams(open_nameless(beside, O_RDWR));
+    if (*file >= 0) return LQ_OK;
+    lq_status status = lq_output_open(&output, beside, error); /* where no file is without a name */
+    if (status != LQ_OK) return status;
+    *file = *output->temporary ? above_streams(open(output->temporary, O_RDWR | O_CLOEXEC)) : -1;
+    if (*file < 0) status = refuse_open(beside, errno, error);
+    lq_output_abandon(output);
+    return status;
 }
 
 lq_status lq_output_folder(const char *path, lq_error *error) {

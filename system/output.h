@@ -27,6 +27,9 @@ lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, 
  * an error nothing is left behind and the older file stands. */
 lq_status lq_output_commit(lq_output *output, lq_error *error);
 
+/* A file without a name in the folder of `beside`, for reading and writing: it goes with the process. */
+lq_status lq_output_scratch(int *file, const char *beside, lq_error *error);
+
 /* Make the folder unless it is there; its parent must be. */
 lq_status lq_output_folder(const char *path, lq_error *error);
 

@@ -178,6 +178,7 @@ static lq_status sum_channel(const float *data, size_t bytes, uint32_t *sum, lq_
         size_t length = i + 1 < blocks ? BLOCK : bytes - i * BLOCK;
         sums[i] = (uint32_t)crc32_z(0, start + i * BLOCK, length);
     }
+    *sum = 0;
     for (size_t i = 0; i < blocks; i++) {
         size_t length = i + 1 < blocks ? BLOCK : bytes - i * BLOCK;
         *sum = (uint32_t)crc32_combine(*sum, sums[i], (z_off_t)length);
@@ -186,19 +187,29 @@ static lq_status sum_channel(const float *data, size_t bytes, uint32_t *sum, lq_
     return LQ_OK;
 }
 
-lq_status lq_exr_checksum(const lq_table *table, uint32_t *sum, lq_error *error) {
-    char *axes = lq_exr_axes_text(table);
+lq_status lq_exr_checksum_join(const lq_table *shape, const uint32_t *of_channels, uint32_t *sum,
+                               lq_error *error) {
+    char *axes = lq_exr_axes_text(shape);
     if (!axes) return lq_fail(error, LQ_NO_MEMORY, "no memory for the axes");
     *sum = sum_text(0, axes);
     free(axes);
-    for (size_t i = 0; i < table->fact_count; i++) {
-        *sum = sum_text(*sum, table->facts[i].key);
-        *sum = sum_text(*sum, table->facts[i].value);
+    for (size_t i = 0; i < shape->fact_count; i++) {
+        *sum = sum_text(*sum, shape->facts[i].key);
+        *sum = sum_text(*sum, shape->facts[i].value);
     }
+    for (int c = 0; c < shape->channel_count; c++) {
+        *sum = sum_text(*sum, shape->channel_names[c]);
+        *sum =
+            (uint32_t)crc32_combine(*sum, of_channels[c], (z_off_t)(lq_table_entries(shape) * sizeof(float)));
+    }
+    return LQ_OK;
+}
+
+lq_status lq_exr_checksum(const lq_table *table, uint32_t *sum, lq_error *error) {
+    uint32_t of_channels[LQ_MAX_CHANNELS];
     lq_status status = LQ_OK;
-    for (int c = 0; c < table->channel_count && status == LQ_OK; c++) {
-        *sum = sum_text(*sum, table->channel_names[c]);
-        status = sum_channel(table->channels[c], lq_table_entries(table) * sizeof(float), sum, error);
-    }
-    return status;
+    for (int c = 0; c < table->channel_count && status == LQ_OK; c++)
+        status =
+            sum_channel(table->channels[c], lq_table_entries(table) * sizeof(float), &of_channels[c], error);
+    return status == LQ_OK ? lq_exr_checksum_join(table, of_channels, sum, error) : status;
 }

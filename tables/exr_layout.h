@@ -41,7 +41,10 @@ lq_status lq_exr_parse_axes(const char *text, size_t most, lq_axis *axes, int *c
 lq_status lq_exr_parse_names(const char *text, size_t limit, char ***names, size_t *count, lq_error *error);
 void lq_exr_free_names(char **names, size_t count);
 
-/* The checksum of a table; the same for any number of threads. */
+/* The checksum of a table from the CRC-32 of the data of each channel, and of one that is held; the same for
+ * any number of threads. */
+lq_status lq_exr_checksum_join(const lq_table *shape, const uint32_t *of_channels, uint32_t *sum,
+                               lq_error *error);
 lq_status lq_exr_checksum(const lq_table *table, uint32_t *sum, lq_error *error);
 
 #endif

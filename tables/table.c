@@ -8,6 +8,7 @@
 #include "system/status.h"
 #include "tables/axis.h"
 #include "tables/facts.h"
+#include "tables/rows.h"
 
 /* 2^33 floats, 32 GiB a channel: eight times the largest table anyone has asked for, and far below where
  * any product of sizes overflows. */
@@ -60,8 +61,9 @@ static lq_status check_channels(const char *const *names, int count, lq_error *e
 
 /* Entries of all channels together; sizes are at most 2^20 each, so that the product of two fits, and it
  * is checked before a third comes in. */
-static lq_status check_entries(const lq_axis *axes, int axis_count, int channel_count, lq_error *error) {
-    size_t memory = physical_memory(), limit = memory / sizeof(float);
+static lq_status check_entries(const lq_axis *axes, int axis_count, int channel_count, size_t memory,
+                               lq_error *error) {
+    size_t limit = memory / sizeof(float);
     if (limit > MAX_ENTRIES) limit = MAX_ENTRIES;
     double asked = channel_count;
     for (int i = 0; i < axis_count; i++) asked *= (double)axes[i].size;
@@ -71,38 +73,60 @@ static lq_status check_entries(const lq_axis *axes, int axis_count, int channel_
                    asked, asked * sizeof(float) / 0x1p30, limit, (double)limit * sizeof(float) / 0x1p30);
 }
 
-static lq_status fill(lq_table *table, const lq_axis *axes, int axis_count, const char *const *channel_names,
-                      int channel_count, lq_error *error) {
+static lq_status copy_shape(lq_table *table, const lq_axis *axes, int axis_count,
+                            const char *const *channel_names, int channel_count, lq_error *error) {
     for (int i = 0; i < axis_count; i++) {
         lq_status status = lq_axis_copy(&table->axes[i], &axes[i], error);
         if (status) return status;
         table->axis_count++;
     }
-    size_t entries = lq_table_entries(table);
-    for (int i = 0; i < channel_count; i++) {
+    for (int i = 0; i < channel_count; i++)
         memcpy(table->channel_names[i], channel_names[i], strlen(channel_names[i]) + 1);
+    table->channel_count = channel_count;
+    return LQ_OK;
+}
+
+static lq_status allocate(lq_table *table, lq_error *error) {
+    size_t entries = lq_table_entries(table);
+    for (int i = 0; i < table->channel_count; i++) {
         table->channels[i] = calloc(entries, sizeof(float));
         if (!table->channels[i])
             return lq_fail(error, LQ_NO_MEMORY, "no memory for a table of %zu entries (%.1f MiB a channel)",
                            entries, (double)entries * sizeof(float) / 0x1p20);
-        table->channel_count++;
     }
     return LQ_OK;
 }
 
-lq_status lq_table_create(lq_table **table, const lq_axis *axes, int axis_count,
-                          const char *const *channel_names, int channel_count, lq_error *error) {
+static lq_status describe(lq_table **table, const lq_axis *axes, int axis_count,
+                          const char *const *channel_names, int channel_count, size_t memory,
+                          lq_error *error) {
     *table = NULL;
     lq_status status = check_counts(axis_count, channel_count, error);
     if (status == LQ_OK) status = check_axes(axes, axis_count, error);
     if (status == LQ_OK) status = check_channels(channel_names, channel_count, error);
-    if (status == LQ_OK) status = check_entries(axes, axis_count, channel_count, error);
+    if (status == LQ_OK) status = check_entries(axes, axis_count, channel_count, memory, error);
     if (status) return status;
     lq_table *made = calloc(1, sizeof *made);
     if (!made) return lq_fail(error, LQ_NO_MEMORY, "no memory for a table");
-    status = fill(made, axes, axis_count, channel_names, channel_count, error);
+    status = copy_shape(made, axes, axis_count, channel_names, channel_count, error);
     if (status) lq_table_free(made);
     else *table = made;
+    return status;
+}
+
+lq_status lq_table_describe(lq_table **table, const lq_axis *axes, int axis_count,
+                            const char *const *channel_names, int channel_count, lq_error *error) {
+    return describe(table, axes, axis_count, channel_names, channel_count, SIZE_MAX, error);
+}
+
+lq_status lq_table_create(lq_table **table, const lq_axis *axes, int axis_count,
+                          const char *const *channel_names, int channel_count, lq_error *error) {
+    lq_status status =
+        describe(table, axes, axis_count, channel_names, channel_count, physical_memory(), error);
+    if (status == LQ_OK) status = allocate(*table, error);
+    if (status == LQ_OK) return LQ_OK;
+    lq_table_free(*table);
+    *table = NULL;
     return status;
 }
 

@@ -1,6 +1,8 @@
 /* precompute.c - `lacquer precompute`: a whole table on all cores, into a file. */
 #include "program/precompute/precompute.h"
 
+#include "precompute/sweep.h"
+#include "program/build.h"
 #include "program/catalogue.h"
 #include "program/light.h"
 #include "program/matched.h"
@@ -12,9 +14,12 @@
 #include "program/verb.h"
 #include "system/status.h"
 
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 enum {
     OPTION_AXIS = 256,
@@ -23,6 +28,7 @@ enum {
     OPTION_INTERFACES,
     OPTION_FROM,
     OPTION_TRUST,
+    OPTION_RESUME,
     OPTION_OUTPUT = 'o'
 };
 enum { KIND = 1, STACK = 2 }; /* modes */
@@ -47,6 +53,9 @@ static const cli_option options[] = {
     {OPTION_TRUST, "allow-plugin", NULL,
      "of table stack: open the NDF files and run the plugins that it names", CLI_FLAG(table_request, trusted),
      .modes = STACK, .silent = true},
+    {OPTION_RESUME, "resume", NULL,
+     "keep what is solved in FILE.parts until FILE is whole, and take up what a run before left there",
+     CLI_FLAG(table_request, resume), .modes = KIND, .silent = true},
     CLI_NDF_OPTION(table_request, KIND),
     CLI_SCATTERING_OPTION(table_request, KIND),
     CLI_MASKING_OPTION(table_request, KIND),
@@ -163,28 +172,36 @@ static bool make_axes(const table_request *request, const lq_kind *kind, lq_axis
  *                                     Computation
  * ====================================================================================== */
 
-static lq_status compute(const table_request *request, const lq_kind *kind, const lq_axis *axes,
-                         lq_table **table, lq_error *error) {
-    cli_progress bar;
-    cli_progress_begin(&bar, kind->id);
-    lq_status status = lq_precompute(kind, &request->settings.settings, axes, &bar.progress, table, error);
-    cli_progress_end(&bar);
-    return status;
-}
-
-static lq_status write_table(const table_request *request, lq_table *table, lq_error *error) {
-    lq_status status = lq_table_set_fact(table, "command", request->command, error);
+static lq_status write_table(const table_request *request, const lq_rows *rows, lq_table *shape,
+                             lq_error *error) {
+    lq_status status = lq_table_set_fact(shape, "command", request->command, error);
     if (status != LQ_OK) return status;
     switch (request->format) {
     case FORMAT_NPY:
-        return lq_table_write_npy(table, request->output, error);
+        return lq_rows_write_npy(rows, request->output, error);
     case FORMAT_BELCOUR:
-        return lq_published_write(table, request->output, LQ_BELCOUR, error);
+        return lq_published_write(shape, request->output, LQ_BELCOUR, error);
     case FORMAT_TM:
-        return lq_published_write(table, request->output, LQ_TM, error);
+        return lq_published_write(shape, request->output, LQ_TM, error);
     default:
-        return lq_table_write_exr(table, request->output, error);
+        return lq_rows_write_exr(rows, request->output, error);
     }
+}
+
+static bool is_file_to_be(const char *path) {
+    struct stat there;
+    return stat(path, &there) != 0 || S_ISREG(there.st_mode);
+}
+
+/* Can what is finished be kept beside the file? */
+static bool resume_suits(const table_request *request, const lq_kind *kind) {
+    if (!request->resume) return true;
+    if (is_mitsuba(request, kind))
+        cli_message("--resume: a Mitsuba file is three tables; accepted: exr, npy, belcour, tm");
+    else if (!is_file_to_be(request->output))
+        cli_message("--resume: %s is no file that parts can lie beside", request->output);
+    else return true;
+    return false;
 }
 
 /* Can the format hold the table to be? Asked before the work. */
@@ -219,30 +236,73 @@ static int precompute_file(const table_request *request, const lq_axis *axes) {
     return status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
 }
 
-int precompute_finish(const table_request *request, lq_table *table, lq_status status, const lq_error *error,
-                      double seconds) {
+int precompute_finish(const table_request *request, const lq_rows *rows, lq_table *shape, size_t found,
+                      lq_status status, const lq_error *error, double seconds, bool *written) {
     lq_error write_error = {""};
-    if (status != LQ_OK && status != LQ_NOT_CONVERGED) return cli_fail_status(status, error);
-    int code = status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
-    lq_status written = write_table(request, table, &write_error);
-    if (written != LQ_OK) {
-        code = cli_fail_status(written, &write_error);
-    } else {
-        const char *estimate = lq_table_fact(table, "error");
-        printf("%s: %zu entries, error at most %s, %.3g s\n", request->output, lq_table_entries(table),
-               estimate ? estimate : "unknown", seconds);
-        if (status != LQ_OK) cli_message("%s", error->text);
-    }
-    lq_table_free(table);
+    const lq_status wrote = write_table(request, rows, shape, &write_error);
+    *written = wrote == LQ_OK;
+    if (!*written) return cli_fail_status(wrote, &write_error);
+    const char *estimate = lq_table_fact(shape, "error");
+    printf("%s: %zu entries, error at most %s, %.3g s", request->output, lq_table_entries(shape),
+           estimate ? estimate : "unknown", seconds);
+    printf(found > 0 ? ", %zu parts from before\n" : "\n", found);
+    if (status != LQ_OK) cli_message("%s", error->text);
+    return status == LQ_OK ? CLI_DONE : CLI_EXCEEDED;
+}
+
+/* Solves of so many bytes are held in memory; of a 64^4 table they are less. */
+enum { IN_MEMORY = 1 << 26 };
+
+/* Where solves are kept; `folder` has room for the name. */
+static lq_parts_place place_of(const table_request *request, char *folder, size_t size) {
+    if (!request->resume)
+        return (lq_parts_place){.beside = is_file_to_be(request->output) ? request->output : NULL,
+                                .most = IN_MEMORY};
+    snprintf(folder, size, "%s.parts", request->output);
+    return (lq_parts_place){.folder = folder};
+}
+
+/* A published layout is written from a table that is held: there are none that are large. */
+static lq_status hold(lq_sweep *sweep, lq_table **held, lq_error *error) {
+    const lq_table *shape = lq_sweep_shape(sweep);
+    const char *names[LQ_MAX_CHANNELS];
+    for (int c = 0; c < shape->channel_count; c++) names[c] = shape->channel_names[c];
+    const lq_status status =
+        lq_table_create(held, shape->axes, shape->axis_count, names, shape->channel_count, error);
+    return status == LQ_OK ? lq_sweep_hold(sweep, *held, error) : status;
+}
+
+static int write_sweep(const table_request *request, lq_sweep *sweep, lq_status status, const lq_error *error,
+                       double seconds, bool *written) {
+    lq_table *held = NULL;
+    lq_error cause = {""};
+    const bool published = request->format >= FORMAT_ENDINGS;
+    const lq_status hold_status = published ? hold(sweep, &held, &cause) : LQ_OK;
+    const lq_rows rows = lq_sweep_rows(sweep);
+    const int code = hold_status != LQ_OK
+                         ? cli_fail_status(hold_status, &cause)
+                         : precompute_finish(request, &rows, held ? held : lq_sweep_shape(sweep),
+                                             lq_sweep_found(sweep), status, error, seconds, written);
+    lq_table_free(held);
     return code;
 }
 
 static int precompute(const table_request *request, const lq_kind *kind, const lq_axis *axes) {
-    lq_table *table = NULL;
+    char folder[PATH_MAX + 8];
+    lq_sweep *sweep = NULL;
     lq_error error = {""};
+    bool written = false;
     const double start = cli_seconds();
-    const lq_status status = compute(request, kind, axes, &table, &error);
-    return precompute_finish(request, table, status, &error, cli_seconds() - start);
+    const lq_parts_place place = place_of(request, folder, sizeof folder);
+    cli_progress bar;
+    cli_progress_begin(&bar, kind->id);
+    const lq_status status = lq_sweep_solve(&sweep, kind, &request->settings.settings, axes, &place,
+                                            cli_build, &bar.progress, &error);
+    cli_progress_end(&bar);
+    if (!sweep) return cli_fail_status(status, &error);
+    const int code = write_sweep(request, sweep, status, &error, cli_seconds() - start, &written);
+    lq_sweep_free(sweep, written);
+    return code;
 }
 
 /* ======================================================================================
@@ -268,7 +328,7 @@ static int run(int argc, char **argv) {
     if (!cli_settings_suit(&given, kind) || !find_format(&request)) return CLI_FAILED;
     if (!cli_output_check(request.output) || !make_axes(&request, kind, axes)) return CLI_FAILED;
     int code = CLI_FAILED;
-    if (format_suits(&request, kind, axes)) {
+    if (resume_suits(&request, kind) && format_suits(&request, kind, axes)) {
         request.command = cli_command(&given, &request, request.table);
         cli_warn_matched(kind, axes);
         if (!request.command) code = cli_fail("out of memory");
@@ -286,6 +346,8 @@ static void print_notes(FILE *out) {
         "NODES of an axis: min:max:n or min:max:n:map with map linear, sqrt (denser at min) or power2.5\n"
         "(any exponent); one value 0.3; or a list 0,0.1,1,3. The file records how it was made and is\n"
         "the same, bit for bit, for any number of threads. Ctrl-C leaves no file and exits 130.\n"
+        "With --resume it leaves FILE.parts, as a kill does: the same command goes on from there, to the\n"
+        "same file; parts of other options are refused. The table itself is never held in memory.\n"
         "TABLE stack is what the layers of --stack FILE.json do to light (lacquer stack), over mu and any\n"
         "parameters of theirs: top.alpha, 2.n, base.rho, ... See docs/stacks.md.\n"
         "Exit 2: written, but the error estimate is above the tolerance.\n\n");

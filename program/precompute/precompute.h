@@ -5,6 +5,7 @@
 #include "lacquer.h"
 #include "program/options.h"
 #include "program/settings.h"
+#include "tables/rows.h"
 
 /* The first two follow from the ending of a file, the published layouts do not. */
 enum {
@@ -26,13 +27,14 @@ typedef struct table_request {
     const char *output;
     const char *stack; /* of table stack, like the two below */
     int interfaces, from;
-    bool trusted;
+    bool trusted, resume;
     char *command; /* what determines the table, as a command line; owned */
 } table_request;
 
-/* Write a table that was computed with this status, free it, and say so; an exit code. */
-int precompute_finish(const table_request *request, lq_table *table, lq_status status, const lq_error *error,
-                      double seconds);
+/* Write a table that was solved with this status, and say so; an exit code. `shape` is that of the rows, or
+ * for a published format holds them; `found`: parts from a run before. *written: the file is there. */
+int precompute_finish(const table_request *request, const lq_rows *rows, lq_table *shape, size_t found,
+                      lq_status status, const lq_error *error, double seconds, bool *written);
 
 /* `lacquer precompute stack`. */
 int precompute_stack(const table_request *request);

@@ -66,7 +66,13 @@ static int compute(const table_request *request, const lq_stack *stack, const lq
     cli_progress_begin(&bar, "stack");
     const lq_status status = lq_stack_precompute(stack, &query, axes, count, &bar.progress, &table, &error);
     cli_progress_end(&bar);
-    return precompute_finish(request, table, status, &error, cli_seconds() - start);
+    if (!table) return cli_fail_status(status, &error);
+    const lq_rows rows = lq_table_rows(table);
+    bool written;
+    const int code =
+        precompute_finish(request, &rows, table, 0, status, &error, cli_seconds() - start, &written);
+    lq_table_free(table);
+    return code;
 }
 
 /* The option itself accepts what any table does; 0: it was not given. */
