@@ -1,5 +1,6 @@
 /* main.c - the lacquer program: finds the verb, prints help, checks that output arrived. */
 #include "lacquer.h"
+#include "program/crew.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/progress.h"
@@ -89,6 +90,8 @@ static int run(int argc, char **argv) {
         cli_print_help(verb);
         return CLI_DONE;
     }
+    if (cli_crew() && !verb->shares)
+        return cli_fail("is work for one process; accepted of several: precompute, validate layered");
     return verb->run(argc - 1, argv + 1);
 }
 
@@ -100,8 +103,7 @@ static void fill_closed_streams(void) {
             return;
 }
 
-int main(int argc, char **argv) {
-    fill_closed_streams();
+static int run_whole(int argc, char **argv) {
     /* A write beyond a file size limit must come back as an error that cleans up, not as a kill. */
     signal(SIGXFSZ, SIG_IGN);
     cli_catch_signals();
@@ -112,4 +114,10 @@ int main(int argc, char **argv) {
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     return cli_fail("cannot write to standard output: %s",
                     errno ? strerror(errno) : "an earlier write failed");
+}
+
+int main(int argc, char **argv) {
+    fill_closed_streams();
+    cli_crew_begin(&argc, &argv);
+    return cli_crew_end(run_whole(argc, argv));
 }

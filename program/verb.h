@@ -98,6 +98,7 @@ typedef struct cli_verb {
     void (*notes)(FILE *out);  /* more help, such as the tables of the catalogue; NULL: none */
     const char *examples;      /* worked examples, one a line */
     int (*run)(int argc, char **argv);
+    bool shares; /* several processes (program/crew.h) may run it, some of its forms at least */
 } cli_verb;
 
 /* How many rows an array has before its {0}; more than a cli_given records do not compile. */

@@ -21,6 +21,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "system/claims.h"
 #include "system/input.h"
 #include "system/output.h"
 #include "system/status.h"
@@ -64,19 +65,10 @@ static bool is_part(const char *name) {
     return strlen(name) >= 7 && strspn(name, "0123456789") == strlen(name);
 }
 
-static bool is_claim(const char *name) {
-    return strcmp(name, "stop") == 0 || (strncmp(name, "taken-", 6) == 0 && is_part(name + 6));
-}
-
-static bool is_any(const char *name) {
-    return is_part(name) || is_claim(name);
-}
-
-/* Remove the files whose names are such. */
-static void clear(const lq_part_folder *f, bool (*such)(const char *)) {
+static void clear_parts(const lq_part_folder *f) {
     DIR *list = opendir(f->path);
     for (struct dirent *entry; list && (entry = readdir(list));)
-        if (such(entry->d_name)) unlinkat(dirfd(list), entry->d_name, 0);
+        if (is_part(entry->d_name)) unlinkat(dirfd(list), entry->d_name, 0);
     if (list) closedir(list);
 }
 
@@ -161,7 +153,7 @@ static lq_status start(lq_part_folder *f, const char *key, lq_error *error) {
     const bool first = !f->crew || f->crew->rank == 0;
     lq_status status = first ? lock(f, error) : LQ_OK;
     if (status == LQ_OK && first) status = check_key(f, key, error);
-    if (status == LQ_OK && first) clear(f, is_claim);
+    if (status == LQ_OK && first) lq_claims_clear(f->path);
     if (!f->crew) return status;
     status = f->crew->meet(f->crew->user, status, error);
     if (status == LQ_OK) status = f->crew->meet(f->crew->user, compare_keys(f, error), error);
@@ -192,7 +184,8 @@ void lq_part_folder_close(lq_part_folder *f, bool whole) {
     if (!f) return;
     if (whole && f->lock >= 0) {
         char path[PATH_MAX];
-        clear(f, is_any);
+        lq_claims_clear(f->path);
+        clear_parts(f);
         name_in(f, "key", path); /* after the parts: they would be nobody's without it */
         unlink(path);
         name_in(f, "lock", path);
@@ -204,34 +197,12 @@ void lq_part_folder_close(lq_part_folder *f, bool whole) {
     free(f);
 }
 
-/* ======================================================================================
- *                                     Who makes what
- * ====================================================================================== */
-
-static bool is_stopped(const lq_part_folder *f) {
-    char path[PATH_MAX];
-    name_in(f, "stop", path);
-    return access(path, F_OK) == 0;
-}
-
 bool lq_part_folder_claim(const lq_part_folder *f, size_t index) {
-    char path[PATH_MAX];
-    if (!f->crew) return true;
-    if (is_stopped(f)) return false;
-    name_part(f, "taken-", index, path);
-    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    /* What cannot be claimed for another reason than that it is claimed is made here, if more than once. */
-    if (file < 0) return errno != EEXIST;
-    close(file);
-    return true;
+    return lq_claim(f->path, f->crew, index);
 }
 
 void lq_part_folder_stop(const lq_part_folder *f) {
-    char path[PATH_MAX];
-    if (!f->crew) return;
-    name_in(f, "stop", path);
-    const int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-    if (file >= 0) close(file);
+    lq_claims_stop(f->path, f->crew);
 }
 
 /* ======================================================================================

@@ -4,6 +4,7 @@
 #include "precompute/sweep.h"
 #include "program/build.h"
 #include "program/catalogue.h"
+#include "program/crew.h"
 #include "program/light.h"
 #include "program/matched.h"
 #include "program/message.h"
@@ -195,7 +196,9 @@ static bool is_file_to_be(const char *path) {
 
 /* Can what is finished be kept beside the file? */
 static bool resume_suits(const table_request *request, const lq_kind *kind) {
-    if (!request->resume) return true;
+    if (!request->resume && cli_crew())
+        cli_message("several processes share what is finished; add --resume, which keeps it in FILE.parts");
+    if (!request->resume) return !cli_crew();
     if (is_mitsuba(request, kind))
         cli_message("--resume: a Mitsuba file is three tables; accepted: exr, npy, belcour, tm");
     else if (!is_file_to_be(request->output))
@@ -259,7 +262,7 @@ static lq_parts_place place_of(const table_request *request, char *folder, size_
         return (lq_parts_place){.beside = is_file_to_be(request->output) ? request->output : NULL,
                                 .most = IN_MEMORY};
     snprintf(folder, size, "%s.parts", request->output);
-    return (lq_parts_place){.folder = folder};
+    return (lq_parts_place){.folder = folder, .crew = cli_crew()};
 }
 
 /* A published layout is written from a table that is held: there are none that are large. */
@@ -300,7 +303,8 @@ static int precompute(const table_request *request, const lq_kind *kind, const l
                                             cli_build, &bar.progress, &error);
     cli_progress_end(&bar);
     if (!sweep) return cli_fail_status(status, &error);
-    const int code = write_sweep(request, sweep, status, &error, cli_seconds() - start, &written);
+    const int code =
+        cli_leads() ? write_sweep(request, sweep, status, &error, cli_seconds() - start, &written) : CLI_DONE;
     lq_sweep_free(sweep, written);
     return code;
 }
@@ -316,6 +320,7 @@ static int run(int argc, char **argv) {
     lq_error error = {""};
     if (!read_arguments(&request, &given, argc, argv)) return CLI_FAILED;
     if (strcmp(request.table, "stack") == 0) {
+        if (cli_crew()) return cli_fail("a stack's table is work for one process");
         if (!cli_suits(&given, STACK, "for a stack") || !find_format(&request)) return CLI_FAILED;
         request.command = cli_command(&given, &request, request.table);
         const int code = request.command ? precompute_stack(&request) : cli_fail("out of memory");
@@ -371,4 +376,5 @@ const cli_verb cli_verb_precompute = {
                 "lacquer precompute stack --stack recipes/stacks/frosted-metal.json --axis mu=0:1:64 "
                 "--axis top.alpha=0:1:64 -o frosted.exr",
     .run = run,
+    .shares = true,
 };

@@ -10,8 +10,10 @@
 #include "pack/contents.h"
 #include "pack/model_source.h"
 #include "program/beside.h"
+#include "program/crew.h"
 #include "program/message.h"
 #include "program/validate/validate.h"
+#include "system/claims.h"
 #include "system/output.h"
 #include "system/status.h"
 #include "validate/layered.h"
@@ -191,12 +193,30 @@ static lq_status run_stack(layered_job *job, size_t i, lq_error *error) {
     return status;
 }
 
+/* Each stack by one of several processes; they are all finished when all have met. */
+static lq_status share_out(layered_job *job, lq_error *error) {
+    const lq_crew *crew = cli_crew();
+    char folder[5000];
+    snprintf(folder, sizeof folder, "%.4000s/finished", job->asked.folder);
+    if (cli_leads()) lq_claims_clear(folder);
+    lq_status status = crew->meet(crew->user, LQ_OK, error);
+    for (size_t i = 0; i < job->set.count && status == LQ_OK; i++)
+        if (lq_claim(folder, crew, i)) status = run_stack(job, i, error);
+    if (status != LQ_OK) lq_claims_stop(folder, crew);
+    status = crew->meet(crew->user, status, error);
+    if (cli_leads()) lq_claims_clear(folder);
+    json_decref(job->figures);
+    job->figures = json_array();
+    return status;
+}
+
 static lq_status run_all(layered_job *job, lq_error *error) {
-    lq_status status = LQ_OK;
     cli_progress_begin(&job->bar, job->set.name);
     job->part = (lq_progress){.report = report_part, .user = job};
     job->figures = json_array();
-    for (size_t i = 0; i < job->set.count && status == LQ_OK; i++) status = run_stack(job, i, error);
+    lq_status status = cli_crew() ? share_out(job, error) : LQ_OK;
+    const size_t count = cli_leads() ? job->set.count : 0; /* the first reads them, and reports */
+    for (size_t i = 0; i < count && status == LQ_OK; i++) status = run_stack(job, i, error);
     cli_progress_end(&job->bar);
     return status;
 }
@@ -208,9 +228,12 @@ int validate_layered(const validate_request *request) {
     lq_error error = {""};
     lq_status status = prepare(job, &error);
     if (status == LQ_OK) status = run_all(job, &error);
-    if (status == LQ_OK) status = lq_layered_report(&job->asked, job->figures, &error);
+    if (status == LQ_OK && cli_leads()) status = lq_layered_report(&job->asked, job->figures, &error);
     else json_decref(job->figures);
-    if (status == LQ_OK)
+    if (status == LQ_OK && cli_crew())
+        printf("%zu stacks of the set %s, by %d processes; %s/index.html\n", job->set.count, job->set.name,
+               cli_crew()->size, job->asked.folder);
+    else if (status == LQ_OK)
         printf("%zu stacks of the set %s, %zu of them from before; %s/index.html\n", job->set.count,
                job->set.name, job->kept, job->asked.folder);
     const int code = status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);

@@ -1,6 +1,7 @@
 /* validate.c - `lacquer validate`: a stored table against the exact solver and the random walk. */
 #include "program/validate/validate.h"
 
+#include "program/crew.h"
 #include "program/message.h"
 #include "program/options.h"
 #include "program/output.h"
@@ -292,6 +293,7 @@ static int run(int argc, char **argv) {
     if (!parse(&job.request, argc, argv)) return CLI_FAILED;
     if (is_hard_cases(&job.request)) return validate_hard_cases(&job.request);
     if (is_layered(&job.request)) return validate_layered(&job.request);
+    if (cli_crew()) return cli_fail("is work for one process; accepted of several: validate layered");
     if (job.request.stack)
         return job.request.slices ? validate_slices(&job.request) : validate_stack(&job.request);
     if (job.request.certify.wanted || certify_takes_alone(job.request.file)) return certify(&job.request);
@@ -336,4 +338,5 @@ const cli_verb cli_verb_validate = {
                 "lacquer validate stack recipes/stacks/slab.json --samples 1000000 --mu 0.7 --slices slices\n"
                 "lacquer validate layered --report report --samples 1000000",
     .run = run,
+    .shares = true,
 };
