@@ -284,8 +284,15 @@ static void keep_permissions(const lq_output *output) {
     if (!output->direct && stat(output->target, &older) == 0) fchmod(output->file, older.st_mode & 07777);
 }
 
+/* Its bytes reach the disk before its name does: after a power cut there is the older file or this one, whole.
+ * File systems that know no such thing say EINVAL. */
+static bool is_on_disk(const lq_output *output) {
+    return output->direct || fdatasync(output->file) == 0 || errno == EINVAL || errno == ENOSYS;
+}
+
 static lq_status publish(lq_output *output, lq_error *error) {
     keep_permissions(output);
+    if (!is_on_disk(output)) return refuse_write(output, errno, error);
     bool named = output->direct || *output->temporary || link_unnamed(output) == 0;
     if (!named) return refuse_open(output->path, errno, error);
     int failed = close(output->file);
