@@ -284,15 +284,8 @@ static void keep_permissions(const lq_output *output) {
     if (!output->direct && stat(output->target, &older) == 0) fchmod(output->file, older.st_mode & 07777);
 }
 
-/* Its bytes reach the disk before its name does: after a power cut there is the older file or this one, whole.
- * File systems that know no such thing say EINVAL. */
-static bool is_on_disk(const lq_output *output) {
-    return output->direct || fdatasync(output->file) == 0 || errno == EINVAL || errno == ENOSYS;
-}
-
 static lq_status publish(lq_output *output, lq_error *error) {
     keep_permissions(output);
-    if (!is_on_disk(output)) return refuse_write(output, errno, error);
     bool named = output->direct || *output->temporary || link_unnamed(output) == 0;
     if (!named) return refuse_open(output->path, errno, error);
     int failed = close(output->file);
@@ -322,6 +315,15 @@ void lq_output_abandon(lq_output *output) {
     free(output->target);
     free(output->path);
     free(output);
+}
+
+lq_status lq_output_settle(const char *path, lq_error *error) {
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const bool settled = file >= 0 && (fsync(file) == 0 || errno == EINVAL || errno == ENOSYS);
+    const int cause = errno;
+    if (file >= 0) close(file);
+    return settled ? LQ_OK
+                   : lq_fail(error, LQ_IO, "%s: cannot be brought to the disk: %s", path, strerror(cause));
 }
 
 lq_status lq_output_scratch(int *file, const char *beside, lq_error *error) {

@@ -23,9 +23,13 @@ lq_status lq_output_print(lq_output *output, lq_error *error, const char *format
 lq_status lq_output_write_at(lq_output *output, const void *bytes, size_t size, uint64_t offset,
                              lq_error *error);
 
-/* Publish the file under its name, replacing an older one, whose permissions it takes, and free `output`. Its
- * bytes are on the disk before. On an error nothing is left behind and the older file stands. */
+/* Publish the file under its name, replacing an older one, whose permissions it takes, and free `output`. On
+ * an error nothing is left behind and the older file stands. */
 lq_status lq_output_commit(lq_output *output, lq_error *error);
+
+/* Wait until a file that was published is on the disk, before what it was made from is removed: a power cut
+ * must not cost both. */
+lq_status lq_output_settle(const char *path, lq_error *error);
 
 /* A file without a name in the folder of `beside`, for reading and writing: it goes with the process. */
 lq_status lq_output_scratch(int *file, const char *beside, lq_error *error);

@@ -13,6 +13,7 @@
 #include "program/progress.h"
 #include "program/settings.h"
 #include "program/verb.h"
+#include "system/output.h"
 #include "system/status.h"
 
 #include <limits.h>
@@ -305,6 +306,7 @@ static int precompute(const table_request *request, const lq_kind *kind, const l
     if (!sweep) return cli_fail_status(status, &error);
     const int code =
         cli_leads() ? write_sweep(request, sweep, status, &error, cli_seconds() - start, &written) : CLI_DONE;
+    if (written && request->resume) written = lq_output_settle(request->output, NULL) == LQ_OK;
     lq_sweep_free(sweep, written);
     return code;
 }

@@ -153,7 +153,7 @@ static const cli_option rows[] = {
     {302, "list", "T", "a list", CLI_LIST(request, list), .silent = true},
     {0}};
 
-static const cli_verb verb = {"fuzz", "", "", rows, CLI_COUNTED(rows), NULL, "", NULL};
+static const cli_verb verb = {"fuzz", "", "", rows, CLI_COUNTED(rows), NULL, "", NULL, false};
 
 static bool take_word(void *of, const char *word) {
     (void)of;
