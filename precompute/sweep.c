@@ -255,8 +255,9 @@ static char *write_key(const lq_sweep *s, const char *build) {
     lq_draft draft = {.text = NULL};
     FILE *out = lq_draft_open(&draft);
     if (!out) return NULL;
-    fprintf(out, "table %s\nndf %s\nscattering %d\nmasking %d\ntolerance %.17g\n", s->job.kind->id,
-            s->job.ndf->id, (int)s->job.scattering, (int)s->job.masking, s->tolerance);
+    fprintf(out, "table %s\nndf %s\nscattering %d\nmasking %d\ntolerance", s->job.kind->id, s->job.ndf->id,
+            (int)s->job.scattering, (int)s->job.masking);
+    print_exact(out, s->tolerance);
     for (int a = 0; a < s->shape->axis_count; a++) {
         const lq_axis *axis = &s->shape->axes[a];
         fprintf(out, "\naxis %s of %zu", axis->name, axis->size);

@@ -58,3 +58,4 @@ complains 'work for one process' list
 mkdir -p t.exr.parts && echo mine >t.exr.parts/notes
 # shellcheck disable=SC2086
 complains 'not a folder of finished parts' precompute $args --resume -o t.exr
+[ "$failures" -eq 0 ]

@@ -57,3 +57,4 @@ echo mine >t.exr.parts/notes
 grep -q 'not a folder of finished parts' err && [ -e t.exr.parts/notes ] || fail "$(cat err)"
 ! "$LACQUER" precompute albedo --resume --format exr -o /dev/null 2>err || fail "parts beside a device"
 grep -q -- '--resume: /dev/null is no file that parts can lie beside' err || fail "$(cat err)"
+[ "$failures" -eq 0 ]

@@ -14,3 +14,4 @@ cd "$work"
 echo "$(tail -1 peak) kB"
 "$LACQUER" info big.exr >info || fail "$(cat info)"
 grep -q 268435456 info || fail "$(cat info)"
+[ "$failures" -eq 0 ]
