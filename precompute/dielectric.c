@@ -184,10 +184,10 @@ static void solution_free(solution *x) {
     free(x->leaving);
 }
 
-static bool solve(const interface *f, solution *x) {
+static bool solve(const interface *f, solution *x, size_t lanes) {
     const lq_hits hits = {
         f->level, 2, {f->sides[0].fall, f->sides[1].fall}, {f->sides[0].rise, f->sides[1].rise}};
-    return lq_hits_solve(&hits, &x->hits, SETTLED);
+    return lq_hits_solve_lanes(&hits, &x->hits, lanes, SETTLED);
 }
 
 /* -------------------------------------------------------------------------------- readout */
@@ -365,7 +365,7 @@ static lq_status answer(const interface *f, const lq_question *q) {
     for (size_t first = 0; first < q->tau_count; first += LQ_LANES) {
         const size_t left = q->tau_count - first, count = left < LQ_LANES ? left : LQ_LANES;
         load_rewards(f, q, at, first, count, &x);
-        if (q->scattering == LQ_MULTIPLE && !solve(f, &x)) status = LQ_NOT_CONVERGED;
+        if (q->scattering == LQ_MULTIPLE && !solve(f, &x, count)) status = LQ_NOT_CONVERGED;
         answer_batch(f, q, readers, first, count, &x);
     }
     solution_free(&x);

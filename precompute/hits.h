@@ -36,4 +36,8 @@ void lq_hits_values_free(lq_hits_values *x);
  * overshoot by enough to matter then. A coarser level holds. */
 bool lq_hits_solve(const lq_hits *hits, lq_hits_values *x, double settled);
 
+/* The same where only the first `lanes` lanes hold a reward, and there is no source: few of them are solved
+ * one by one, with eight depths in the place of eight rewards. */
+bool lq_hits_solve_lanes(const lq_hits *hits, lq_hits_values *x, size_t lanes, double settled);
+
 #endif

@@ -60,6 +60,7 @@ typedef struct lq_two_sided {
     const lq_v8 *other;                    /* E of the other side, whose depths count backwards */
     lq_v8 *before;                         /* C of this side */
     const lq_v8 *reward;                   /* [rising node] */
+    lq_v8 *mirrored;                       /* of packed depths: see travel_packed */
 } lq_two_sided;
 
 typedef struct lq_solver_kernels {
@@ -86,6 +87,11 @@ typedef struct lq_solver_kernels {
      */
     double (*travel)(const lq_two_sided *s, const double *survival);
     void (*meet)(const lq_two_sided *s);
+    /* The same of one reward, reward[node][0], whose depths are packed into lanes: depth 8 b + l of E and C
+     * is [b * 2 nodes + q][l], and no lane beyond the last depth is ever other than 0. `mirrored` gets E once
+     * more, its depths backwards in blocks that count backwards: as `other`, `meet` of ceil(depths / 8)
+     * depths takes it for what it is. Rows of weights are read to the end of a vector. */
+    double (*travel_packed)(const lq_two_sided *s, const double *survival);
     /* out[q] = sum_k arrival[k] e[k * directions + q], or with the depths backwards. */
     void (*average)(int depths, int directions, const double *arrival, int backwards, const lq_v8 *e,
                     lq_v8 *out);

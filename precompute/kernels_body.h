@@ -371,6 +371,56 @@ static double travel(const lq_two_sided *s, const double *survival) {
     return most;
 }
 
+/* A vector of weights, wherever it starts. */
+typedef double lq_v8_anywhere __attribute__((vector_size(64), aligned(8)));
+
+/* E of one node at eight depths from `first` on: out[b] += sum_l weights[first + b][l] C(u_l). */
+static void travel_eight(int depths, int first, const double *weights, const lq_v8 *c, size_t step,
+                         double *out) {
+    lq_v8 sum[LQ_LANES] = {{0.0}};
+    const int blocks = (depths + LQ_LANES - 1) / LQ_LANES;
+    const int rows = depths - first < LQ_LANES ? depths - first : LQ_LANES;
+    for (int b = 0; b < rows; b++) {
+        const double *w = weights + (first + b) * depths;
+        for (int l = 0; l < blocks; l++)
+            sum[b] += *(const lq_v8_anywhere *)(const void *)(w + l * LQ_LANES) * c[(size_t)l * step];
+    }
+    add_lanes(sum, out);
+}
+
+/* One direction q of a side, all depths: out[depth] comes with what is there without any hit. */
+static double travel_packed_node(const lq_two_sided *s, int q, const double *weights, double *out) {
+    const size_t step = 2 * (size_t)s->nodes;
+    const int last = s->depths - 1, blocks = last / LQ_LANES;
+    double most = 0.0;
+    for (int k = 0; k <= last; k += LQ_LANES)
+        travel_eight(s->depths, k, weights, s->before + q, step, out + k);
+    for (int k = 0; k <= last; k++) {
+        double *at = (double *)(s->own + (size_t)(k / LQ_LANES) * step + q) + k % LQ_LANES;
+        const int back = last - k;
+        const double change = fabs(out[k] - *at);
+        most = change > most ? change : most;
+        *at = out[k];
+        ((double *)(s->mirrored + (size_t)(blocks - back / LQ_LANES) * step + q))[back % LQ_LANES] = out[k];
+    }
+    return most;
+}
+
+static double travel_packed(const lq_two_sided *s, const double *survival) {
+    const int n = s->nodes;
+    const size_t matrix = (size_t)s->depths * (size_t)s->depths;
+    double most = 0.0;
+    for (int j = 0; j < n; j++) {
+        double rising[LQ_DEPTHS_LIMIT + LQ_LANES] = {0.0}, falling[LQ_DEPTHS_LIMIT + LQ_LANES] = {0.0};
+        for (int k = 0; k < s->depths; k++) rising[k] = survival[k * n + j] * s->reward[j][0];
+        const double up = travel_packed_node(s, j, s->travel_up + (size_t)j * matrix, rising);
+        const double down = travel_packed_node(s, n + j, s->travel_down + (size_t)j * matrix, falling);
+        most = up > most ? up : most;
+        most = down > most ? down : most;
+    }
+    return most;
+}
+
 /* Four rows of a facet operator against the directions of both sides at one depth. */
 static inline void meet_rows(int rows, int n, const double *operators, const lq_v8 *own, const lq_v8 *other,
                              lq_v8 *out) {
@@ -435,8 +485,8 @@ static void arrive(int depths, int nodes, const double *restrict arrival, int ba
 }
 
 const lq_solver_kernels *LQ_KERNELS(void) {
-    static const lq_solver_kernels kernels = {moments,  moments3, escaping,     spread, assemble,
-                                              sweep,    survival, travel,       meet,   average,
-                                              contract, arrive,   read_energies};
+    static const lq_solver_kernels kernels = {moments, moments3, escaping, spread,       assemble,
+                                              sweep,   survival, travel,   meet,         travel_packed,
+                                              average, contract, arrive,   read_energies};
     return &kernels;
 }

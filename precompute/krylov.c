@@ -10,21 +10,24 @@ enum { BASIS = 60 }; /* products between restarts: 100 MB at the finest level */
 
 typedef struct arnoldi {
     size_t size;
+    bool joined;
     lq_v8 *v;                  /* [k * size]: orthonormal */
     lq_v8 h[BASIS + 1][BASIS]; /* what the products came to, rotated to a triangle */
     lq_v8 c[BASIS], s[BASIS];  /* the rotations */
     lq_v8 g[BASIS + 1];        /* the residual, rotated: |g[k]| is left after k products */
 } arnoldi;
 
-static void dot(size_t n, const lq_v8 *a, const lq_v8 *b, lq_v8 *out) {
+static void dot(size_t n, bool joined, const lq_v8 *a, const lq_v8 *b, lq_v8 *out) {
     lq_v8 sum = {0.0};
+    double all = 0.0;
     for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    *out = sum;
+    for (int l = 0; l < LQ_LANES; l++) all += sum[l];
+    *out = joined ? (lq_v8){0.0} + all : sum;
 }
 
 /* The norm, and its inverse: 0 for 0, so that a lane that is done stays as it is. */
-static void norm_of(size_t n, const lq_v8 *a, lq_v8 *norm, lq_v8 *inverse) {
-    dot(n, a, a, norm);
+static void norm_of(size_t n, bool joined, const lq_v8 *a, lq_v8 *norm, lq_v8 *inverse) {
+    dot(n, joined, a, a, norm);
     for (int l = 0; l < LQ_LANES; l++) {
         (*norm)[l] = sqrt((*norm)[l]);
         (*inverse)[l] = (*norm)[l] > 1e-300 ? 1.0 / (*norm)[l] : 0.0;
@@ -42,7 +45,7 @@ static void restart(arnoldi *a, lq_krylov_apply *apply, void *user, const lq_v8 
     lq_v8 *r = a->v, scale;
     apply(user, x, r);
     for (size_t i = 0; i < a->size; i++) r[i] += b[i] - x[i];
-    norm_of(a->size, r, &a->g[0], &scale);
+    norm_of(a->size, a->joined, r, &a->g[0], &scale);
     for (size_t i = 0; i < a->size; i++) r[i] *= scale;
 }
 
@@ -56,11 +59,11 @@ static void extend(arnoldi *a, lq_krylov_apply *apply, void *user, int k) {
     for (int j = 0; j <= k; j++) {
         const lq_v8 *u = a->v + (size_t)j * n;
         lq_v8 h;
-        dot(n, u, w, &h);
+        dot(n, a->joined, u, w, &h);
         for (size_t i = 0; i < n; i++) w[i] -= h * u[i];
         a->h[j][k] = h;
     }
-    norm_of(n, w, &a->h[k + 1][k], &scale);
+    norm_of(n, a->joined, w, &a->h[k + 1][k], &scale);
     for (size_t i = 0; i < n; i++) w[i] *= scale;
 }
 
@@ -73,7 +76,7 @@ static void rotate(arnoldi *a, int k) {
     }
     const lq_v8 both[2] = {a->h[k][k], a->h[k + 1][k]};
     lq_v8 scale;
-    norm_of(2, both, &a->h[k][k], &scale);
+    norm_of(2, false, both, &a->h[k][k], &scale);
     a->c[k] = both[0] * scale;
     a->s[k] = both[1] * scale;
     a->g[k + 1] = -a->s[k] * a->g[k];
@@ -92,14 +95,15 @@ static void add_solution(const arnoldi *a, int count, lq_v8 *x) {
         for (size_t i = 0; i < a->size; i++) x[i] += y[k] * a->v[(size_t)k * a->size + i];
 }
 
-double lq_krylov_solve(lq_krylov_apply *apply, void *user, size_t size, const lq_v8 *b, lq_v8 *x, int most,
-                       double tolerance) {
+double lq_krylov_solve(lq_krylov_apply *apply, void *user, size_t size, bool joined, const lq_v8 *b, lq_v8 *x,
+                       int most, double tolerance) {
     arnoldi *a = (arnoldi *)(void *)lq_zeros(sizeof *a / sizeof(double));
     lq_v8 norm, inverse;
     double left = -1.0;
     if (a) a->size = size;
+    if (a) a->joined = joined;
     if (a) a->v = (lq_v8 *)(void *)lq_zeros((BASIS + 1) * size * LQ_LANES);
-    norm_of(size, b, &norm, &inverse);
+    norm_of(size, joined, b, &norm, &inverse);
     const double scale = largest(&norm) > 0.0 ? 1.0 / largest(&norm) : 1.0;
     for (int used = 0; a && a->v && used < most;) {
         restart(a, apply, user, b, x);

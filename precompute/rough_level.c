@@ -104,8 +104,9 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
     if (!r) return NULL;
     lq_depths_make(&r->depths, l->depths);
     lq_facet_rule_make(&r->rule, l->outer, l->inner);
-    r->travel_down = lq_zeros(n * d * d);
-    r->travel_up = lq_zeros(n * d * d);
+    /* Rows are read to the end of a vector. */
+    r->travel_down = lq_zeros(n * d * d + LQ_LANES);
+    r->travel_up = lq_zeros(n * d * d + LQ_LANES);
     r->survival = lq_zeros(n * d);
     r->refracted_hits = lq_zeros(ARRIVALS * d * n);
     const bool axis =
