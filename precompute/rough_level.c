@@ -15,8 +15,8 @@ static const resolution regular[LQ_DIELECTRIC_LEVELS] = {{12, 12, 8, 8},   {20, 
 /* Nearly matched media: the energy steps over ever fewer of the critical cosines, and what a facet does to a
  * direction is multiplied by all the facets that are met. */
 static const resolution matched[LQ_DIELECTRIC_LEVELS] = {
-    {24, 16, 12, 12}, {32, 20, 16, 16},  {48, 24, 24, 20}, {64, 28, 32, 24},
-    {96, 32, 48, 28}, {128, 36, 56, 32}, {160, 40, 64, 40}};
+    {24, 16, 12, 12}, {32, 24, 16, 16}, {40, 36, 24, 20}, {48, 44, 32, 24},
+    {64, 52, 40, 28}, {80, 60, 52, 32}, {104, 68, 60, 40}};
 
 /* Leaving nodes for energy alone, and for any reward. */
 static const int leaving_nodes[LQ_DIELECTRIC_LEVELS][2] = {{16, 20}, {18, 24}, {20, 28}, {24, 36},
@@ -122,13 +122,19 @@ static lq_rough_level *level_make(const lq_ndf *ndf, double alpha, double scale,
     return r;
 }
 
-static lq_rough_level *level_with_leaving(const lq_ndf *ndf, double alpha, int level, int band) {
-    const resolution *l = band >= NEARLY_MATCHED ? &matched[level] : &regular[level];
-    const lq_level_splits none = {0};
-    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), l, &none, true);
+/* The axes of nearly matched media are divided at the critical cosine, where energies step. */
+static lq_rough_level *level_with_leaving(const lq_ndf *ndf, double alpha, int level, int band,
+                                          double divided_at) {
+    const bool divides = divided_at > 0.0;
+    const lq_level_splits splits = {.count = divides, .at = {divided_at}};
+    resolution l = band >= NEARLY_MATCHED ? matched[level] : regular[level];
+    l.nodes /= splits.count + 1;
+    lq_rough_level *r = level_make(ndf, alpha, ldexp(alpha, -band), &l, &splits, true);
     if (r && leaving_make(&r->leaving[0], ndf, alpha, leaving_nodes[level][0]) &&
-        leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1]))
+        leaving_make(&r->leaving[1], ndf, alpha, leaving_nodes[level][1])) {
+        r->divided_at = divided_at;
         return r;
+    }
     lq_rough_level_free(r);
     return NULL;
 }
@@ -181,8 +187,13 @@ double lq_dielectric_regular_from(const lq_rough *rough) {
 
 const lq_rough_level *lq_rough_level_get(lq_rough *rough, double eta, int level) {
     const int band = band_of(rough->alpha, eta);
+    const double divided_at = band >= NEARLY_MATCHED ? sqrt(2.0 * fabs(eta - 1.0)) : 0.0;
     lq_rough_level **r = &rough->levels[band][level];
-    if (!*r) *r = level_with_leaving(rough->ndf, rough->alpha, level, band);
+    if (*r && (*r)->divided_at != divided_at) {
+        lq_rough_level_free(*r);
+        *r = NULL;
+    }
+    if (!*r) *r = level_with_leaving(rough->ndf, rough->alpha, level, band, divided_at);
     return *r;
 }
 

@@ -20,6 +20,7 @@ typedef struct lq_leaving {
  * not interpolated at all. */
 struct lq_rough_level {
     lq_node_axis axis;
+    double divided_at; /* of nearly matched media: the critical cosine; otherwise 0 */
     double lambda[LQ_NODES_MAX];
     lq_depths depths;
     lq_facet_rule rule;

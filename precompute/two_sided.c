@@ -211,33 +211,62 @@ static double limit_value(const lq_directional *d, const lq_similar *near, doubl
     return tau == 1.0 ? 1.0 : tau > 0.0 && cosine > 0.0 ? exp(log(tau) / cosine) : 0.0;
 }
 
+/* Near the step its width rules, which goes like sqrt(ln N / N): half a dozen facets in a row may turn light
+ * the same way, and the few that it meets at grazing turn it most. Where the similar interface is as many
+ * widths from its step: mu / mu_c. */
+static double at_step(const lq_similar *near, double ratio) {
+    const double narrower =
+        sqrt(near->facets / log(near->facets) * log(LQ_SIMILAR_FACETS) / LQ_SIMILAR_FACETS);
+    return fmax(1.0 + (ratio - 1.0) * narrower, 0.0);
+}
+
+static bool is_at_step(const lq_similar *near, double ratio) {
+    return near->denser && fabs(ratio - 1.0) < 6.0 / sqrt(near->facets);
+}
+
+/* What the similar interface reflects at the same mu / mu_c, and as many widths from its step. */
+typedef struct similar_pair {
+    double same, widths;
+} similar_pair;
+
 /* One value from the limit and what the similar interface reflects beyond its own. Only energy is corrected;
- * of attenuated light all that the facets turn may be missing. */
+ * of attenuated light all that the facets turn may be missing. At the step departures lie between those of
+ * the two rules, give or take a fifth of the second. */
 static double similar_value(const lq_directional *d, const lq_similar *near, double mu, double tau,
-                            double reflected, double *estimate) {
+                            similar_pair reflected, double *estimate) {
     const lq_directional energy = {.reward_side = 0};
-    const double flat = limit_value(&energy, near, mu, 1.0);
-    const double excess = (reflected - flat) * LQ_SIMILAR_FACETS / near->facets;
-    const double value = limit_value(d, near, mu, tau), added = d->reward_side == 0 ? excess : -excess;
-    const bool steps = near->denser && fabs(mu / near->critical - 1.0) < 6.0 / sqrt(near->facets);
-    *estimate = fmax(*estimate, steps ? 1.0 : (tau == 1.0 ? 0.5 : 1.0) * fabs(excess));
+    const double flat = limit_value(&energy, near, mu, 1.0), value = limit_value(d, near, mu, tau);
+    const double share = LQ_SIMILAR_FACETS / near->facets;
+    double excess = (reflected.same - flat) * share, missing = 0.5 * fabs(excess);
+    if (is_at_step(near, mu / near->critical)) {
+        const double widest = reflected.widths - flat;
+        missing = fmax(0.6 * fabs(widest), missing);
+        if (fabs(excess) < 0.6 * fabs(widest)) excess = 0.6 * widest;
+    }
+    const double added = d->reward_side == 0 ? excess : -excess;
+    *estimate = fmax(*estimate, tau == 1.0 ? missing : fabs(excess) + missing);
     return fmin(fmax(value + (tau == 1.0 ? added : 0.0), 0.0), 1.0);
 }
 
 static lq_status similar_solve(lq_rough *rough, const lq_similar *near, double tolerance,
                                const lq_directional *d, double *values, double *estimate, lq_error *error) {
     static const double energy = 1.0;
-    double *scaled = malloc(2 * d->mu_count * sizeof *scaled);
-    if (!scaled) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", d->mu_count);
-    double *reflected = scaled + d->mu_count, missing = 0.0;
-    const double share = LQ_SIMILAR_FACETS / near->facets;
-    for (size_t m = 0; m < d->mu_count; m++) scaled[m] = fmin(d->mu[m] / share, 1.0);
-    const lq_directional asked = {d->scattering, 0, scaled, d->mu_count, &energy, 1};
+    const size_t count = d->mu_count;
+    double *scaled = malloc(4 * count * sizeof *scaled);
+    if (!scaled) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu cosines", count);
+    double *reflected = scaled + 2 * count, missing = 0.0;
+    const double share = LQ_SIMILAR_FACETS / near->facets, unit = near->critical / share;
+    for (size_t m = 0; m < count; m++) {
+        scaled[m] = fmin(d->mu[m] / share, 1.0);
+        scaled[count + m] = fmin(at_step(near, d->mu[m] / near->critical) * unit, 1.0);
+    }
+    const lq_directional asked = {d->scattering, 0, scaled, 2 * count, &energy, 1};
     const lq_status status =
-        watched_solve(rough, near->eta, tolerance / share, &asked, reflected, estimate, error);
-    for (size_t i = 0; status == LQ_OK && i < d->mu_count * d->tau_count; i++) {
-        const size_t m = i % d->mu_count;
-        values[i] = similar_value(d, near, d->mu[m], d->tau[i / d->mu_count], reflected[m], &missing);
+        watched_solve(rough, near->eta, fmin(tolerance / share, 1e-3), &asked, reflected, estimate, error);
+    for (size_t i = 0; status == LQ_OK && i < count * d->tau_count; i++) {
+        const size_t m = i % count;
+        const similar_pair pair = {reflected[m], reflected[count + m]};
+        values[i] = similar_value(d, near, d->mu[m], d->tau[i / count], pair, &missing);
     }
     *estimate = fmin(*estimate * share + missing, 1.0);
     free(scaled);
