@@ -229,22 +229,22 @@ typedef struct similar_pair {
     double same, widths;
 } similar_pair;
 
-/* One value from the limit and what the similar interface reflects beyond its own. Only energy is corrected;
- * of attenuated light all that the facets turn may be missing. At the step departures lie between those of
- * the two rules, give or take a fifth of the second. */
+/* One value from the limit and what the similar interface reflects beyond its own. At the step departures lie
+ * between none and the larger of the two rules', give or take a fifth. Only energy is corrected: of
+ * attenuated light all that the facets turn may be missing, or tau of it be there where the limit has none.
+ */
 static double similar_value(const lq_directional *d, const lq_similar *near, double mu, double tau,
                             similar_pair reflected, double *estimate) {
     const lq_directional energy = {.reward_side = 0};
     const double flat = limit_value(&energy, near, mu, 1.0), value = limit_value(d, near, mu, tau);
-    const double share = LQ_SIMILAR_FACETS / near->facets;
-    double excess = (reflected.same - flat) * share, missing = 0.5 * fabs(excess);
+    const double widest = reflected.widths - flat;
+    double excess = (reflected.same - flat) * LQ_SIMILAR_FACETS / near->facets, missing = 0.5 * fabs(excess);
     if (is_at_step(near, mu / near->critical)) {
-        const double widest = reflected.widths - flat;
-        missing = fmax(0.6 * fabs(widest), missing);
-        if (fabs(excess) < 0.6 * fabs(widest)) excess = 0.6 * widest;
+        missing = 0.6 * fmax(fabs(excess), fabs(widest));
+        excess = copysign(missing, widest);
     }
-    const double added = d->reward_side == 0 ? excess : -excess;
-    *estimate = fmax(*estimate, tau == 1.0 ? missing : fabs(excess) + missing);
+    const double added = d->reward_side == 0 ? excess : -excess, pays = value > 0.0 ? 1.0 : tau;
+    *estimate = fmax(*estimate, tau == 1.0 ? missing : pays * (fabs(excess) + missing));
     return fmin(fmax(value + (tau == 1.0 ? added : 0.0), 0.0), 1.0);
 }
 
