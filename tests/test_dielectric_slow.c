@@ -401,6 +401,28 @@ static void nearly_matched_media_agree_with_walks(void **state) {
     print_message("nearly matched media, random walks: largest |z| %.2f\n", worst);
 }
 
+/* Where many facets leave a step, values miss their tolerance, but not their estimate: 212 facets, both sides
+ * of the critical cosine and on it. */
+static void the_step_of_matched_media_is_within_its_estimate(void **state) {
+    (void)state;
+    const double cosines[] = {.0012, .00141421, .0015};
+    const lq_settings settings = settings_of(1e-4, LQ_MULTIPLE);
+    double worst = 0.0;
+    for (size_t i = 0; i < COUNT(cosines); i++) {
+        const double point[] = {cosines[i], 0.3, 1.0 - 1e-6};
+        lq_walk walk = walk_into(point[1], point[2], 1000, 300 + i);
+        lq_walk_sides sides;
+        double value, estimate;
+        walk.mu = point[0];
+        assert_int_equal(lq_walk_two_sided(&walk, &sides, NULL), LQ_OK);
+        assert_int_equal(
+            lq_eval(lq_kind_find("fgd-dielectric", NULL), &settings, point, &value, &estimate, NULL),
+            LQ_NOT_CONVERGED);
+        assert_true(estimate < 0.5);
+        inside_noise("R01 at the step", value, sides.reflected, estimate, &worst);
+    }
+}
+
 /* ------------------------------------------------------------------------------------- hard cases */
 
 static const double hard_mu[] = {0.0, 1e-6, 1e-4, 0.02, 0.3, 0.745355, 0.96824583, 1.0};
@@ -497,6 +519,7 @@ int main(void) {
         cmocka_unit_test(more_absorption_leaves_less),
         cmocka_unit_test(random_walks_agree),
         cmocka_unit_test(nearly_matched_media_agree_with_walks),
+        cmocka_unit_test(the_step_of_matched_media_is_within_its_estimate),
         cmocka_unit_test(hard_cases_have_values),
         cmocka_unit_test(critical_angle_is_a_step),
     };
