@@ -110,8 +110,8 @@ static lq_status write_compression_chart(const bench_page *page, size_t from, si
         const bench_compression *c = &page->compressions[*end];
         if (count == 0 || strcmp(series[count - 1].name, c->scheme) != 0) {
             if (count == SCHEMES) continue;
-            series[count] =
-                (lq_plot_line){c->scheme, 0, bytes[count], worst[count], NULL, (int)count, c->scheme[0] == 's'};
+            series[count] = (lq_plot_line){c->scheme, 0,          bytes[count],       worst[count],
+                                           NULL,      (int)count, c->scheme[0] == 's'};
             count++;
         }
         lq_plot_line *s = &series[count - 1];

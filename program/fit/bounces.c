@@ -82,7 +82,8 @@ static json_t *row_of(const fit_job *job, double alpha, int n, double mean, doub
            100.0 * (paper / mean - 1.0));
     return json_pack("{s:f, s:i, s:o, s:o, s:o, s:o, s:o}", "alpha", alpha, "bounces", n, "simulated",
                      lq_json_number(mean), "standard-error", lq_json_number(sigma), "exact-f",
-                     lq_json_number(exact), "fit", lq_json_number(fitted), "published", lq_json_number(paper));
+                     lq_json_number(exact), "fit", lq_json_number(fitted), "published",
+                     lq_json_number(paper));
 }
 
 json_t *fit_bounces(const fit_job *job, size_t samples) {

@@ -21,8 +21,8 @@ static json_t *lobe_row(const fit_job *job, double eta, double mu, double alpha)
     if (isfinite(scale)) printf("   %.4e %+8.1f %%\n", narrow, 100.0 * (narrow / v - 1.0));
     else printf("   total reflection\n");
     return json_pack("{s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "eta", eta, "mu", mu, "alpha", alpha, "passed",
-                     lq_json_number(passed), "variance", lq_json_number(v), "error-estimate", lq_json_number(estimate),
-                     "equation-10", lq_json_number(isfinite(scale) ? narrow : NAN));
+                     lq_json_number(passed), "variance", lq_json_number(v), "error-estimate",
+                     lq_json_number(estimate), "equation-10", lq_json_number(isfinite(scale) ? narrow : NAN));
 }
 
 /* A lobe of alpha = 0.1 through a smooth interface. */

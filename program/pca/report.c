@@ -108,8 +108,8 @@ static lq_status write_svg(const pca_request *request, const lq_pca_try *tries, 
         rms[t] = sorted[t].errors.rms;
     }
     const lq_plot_line series[] = {{"max", count, x, max, NULL, 0, false},
-                                {"p99", count, x, p99, NULL, 1, false},
-                                {"rms", count, x, rms, NULL, 2, false}};
+                                   {"p99", count, x, p99, NULL, 1, false},
+                                   {"rms", count, x, rms, NULL, 2, false}};
     const lq_plot plot = {.title = "error of the factors tried",
                           .subtitle = request->input,
                           .x = {"bytes in half floats", true},
