@@ -739,11 +739,13 @@ size_t lq_certificates_count(const lq_certificates *certificates);
 bool lq_certificates_get(const lq_certificates *certificates, size_t i, lq_certificate *certificate);
 bool lq_certificates_passed(const lq_certificates *certificates);
 
-/* Those of tables as JSON (free() the text), as JUnit XML with a test case a judgement, and as a web page,
- * folder/index.html, which needs no other file. Files appear whole or not at all. */
+/* As JSON (free() the text), as JUnit XML with a test case a judgement, and as a web page, folder/index.html,
+ * which needs no other file. `date`, "2026-11-26", is what the page tells; NULL: none. Files appear whole or
+ * not at all. */
 lq_status lq_certificates_json(const lq_certificates *certificates, char **text, lq_error *error);
 lq_status lq_certificates_junit(const lq_certificates *certificates, const char *path, lq_error *error);
-lq_status lq_certificates_page(const lq_certificates *certificates, const char *folder, lq_error *error);
+lq_status lq_certificates_page(const lq_certificates *certificates, const char *folder, const char *date,
+                               lq_error *error);
 
 /* ======================================================================================
  *                                        Stacks

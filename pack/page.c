@@ -7,13 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "picture/document.h"
 #include "picture/page_parts.h"
 #include "picture/text.h"
 #include "system/draft.h"
 #include "system/output.h"
 #include "system/status.h"
 
-extern const char lq_stage_script[], lq_stage_style[];
+extern const char lq_stage_script[];
 
 /* ======================================================================================
  *                                       Reference
@@ -98,14 +99,6 @@ static lq_status put_source(FILE *out, const char *id, const lq_atlas_contents *
 /* ======================================================================================
  *                                        The page
  * ====================================================================================== */
-
-static void put_head(FILE *out, const lq_recipe *recipe) {
-    fprintf(out,
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>%s</title>\n"
-            "<style>\n%s%s</style>\n</head>\n<body>\n<h1>%s</h1>\n",
-            recipe->name, lq_page_style, lq_stage_style, recipe->name);
-}
 
 /* The material with the largest error, of those and tables. */
 static void put_verdict(FILE *out, const lq_packing *packing) {
@@ -199,7 +192,7 @@ static lq_status put_page(FILE *out, const lq_packing *packing, const reference 
     const size_t count = packing->recipe->material_count;
     const lq_atlas_contents finer = {&r->atlas, r->albedo_count, count, &r->albedo, r->materials};
     char *decode = NULL;
-    put_head(out, packing->recipe);
+    lq_document_begin(out, packing->recipe->name);
     put_verdict(out, packing);
     put_stage(out);
     put_functions(out, packing);
@@ -210,7 +203,8 @@ static lq_status put_page(FILE *out, const lq_packing *packing, const reference 
     free(decode);
     if (status == LQ_OK) status = put_source(out, "reference", &finer, error);
     put_data(out, packing, r);
-    fprintf(out, "<script>\n%s</script>\n</body>\n</html>\n", lq_stage_script);
+    fprintf(out, "<script>\n%s</script>\n", lq_stage_script);
+    lq_document_end(out);
     return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "picture/document.h"
 #include "picture/text.h"
 #include "system/stream.h"
 
@@ -35,19 +36,18 @@ size_t lq_page_node(size_t i, size_t kept, size_t size) {
  *                                        The page
  * ====================================================================================== */
 
-static void put_head(FILE *out, const lq_figure *figure) {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+void lq_page_unscripted(FILE *out) {
+    fputs("<noscript><p class=\"note\">The pictures of this page are drawn by its script, which does not run."
+          "</p></noscript>\n",
           out);
-    lq_text_put(out, figure->title);
-    fprintf(out, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<h1>", lq_page_style);
-    lq_text_put(out, figure->title);
-    fputs("</h1>\n<p>", out);
+}
+
+static void put_head(FILE *out, const lq_figure *figure) {
+    lq_document_begin(out, figure->title);
+    fputs("<p>", out);
     lq_text_put(out, figure->subtitle);
-    fputs(
-        "</p>\n<noscript><p class=\"note\">The pictures of this page are drawn by its script, which does not "
-        "run.</p></noscript>\n",
-        out);
+    fputs("</p>\n", out);
+    lq_page_unscripted(out);
 }
 
 static void put_facts(FILE *out, const lq_figure *figure) {
@@ -110,7 +110,8 @@ static lq_status put_page(FILE *out, const lq_page *page, lq_error *error) {
         fprintf(out,
                 "<p class=\"note\">%zu of %zu pictures are left out, so that the page stays small.</p>\n",
                 figure->panel_count - shown, figure->panel_count);
-    fprintf(out, "<script>\n%s</script>\n</body>\n</html>\n", lq_page_script);
+    fprintf(out, "<script>\n%s</script>\n", lq_page_script);
+    lq_document_end(out);
     return status;
 }
 

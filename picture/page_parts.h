@@ -8,6 +8,9 @@
 
 extern const char lq_page_script[], lq_page_style[];
 
+/* What stands where there are no scripts. */
+void lq_page_unscripted(FILE *out);
+
 /* A string; its '<' cannot end the element that it stands in. `text` is as lq_text_clean gives it. */
 void lq_page_string(FILE *out, const char *text);
 /* Float32, little end first, as a string of base64. */

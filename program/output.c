@@ -56,6 +56,21 @@ bool cli_output_check(const char *path) {
     return false;
 }
 
+bool cli_report_folder(const char *folder) {
+    char page[PATH_MAX];
+    lq_error error = {""};
+    if (strlen(folder) > sizeof page - 256) {
+        cli_message("--report: the name of the folder is too long");
+        return false;
+    }
+    if (lq_output_folder(folder, &error) != LQ_OK) {
+        cli_message("--report: %s", error.text);
+        return false;
+    }
+    snprintf(page, sizeof page, "%s/index.html", folder);
+    return cli_output_check(page);
+}
+
 bool cli_print_json(json_t *root, size_t flags) {
     char *text = lq_json_dump(root, flags);
     if (!text) cli_message("no memory to print JSON");

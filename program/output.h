@@ -10,6 +10,10 @@
  * False: a line was printed. */
 bool cli_output_check(const char *path);
 
+/* The folder of a page: it is made where it does not exist, and takes its index.html. False: a line was
+ * printed. */
+bool cli_report_folder(const char *folder);
+
 /* Print `root`, which is freed, on stdout, with jansson's `flags`. False, and a line on stderr: no memory,
  * and nothing was printed. */
 bool cli_print_json(json_t *root, size_t flags);

@@ -25,13 +25,22 @@ refused() { # PATTERN arguments
     grep -qE -- "$pattern" err || fail "fit $*: $(cat err)"
 }
 
-"$LACQUER" fit variance -o v.json --snippet v.h --report v.svg --texture f.exr >out
+"$LACQUER" fit variance -o v.json --snippet v.h --report v --texture f.exr >out
 largest 'relative error' 0.02
 grep -q 'rms 0.9[0-9]*, max 2.58 at 0.01' out || fail "B18's f on the same points: $(cat out)"
 for key in coefficients covariance relative-error published max-at inverse; do
     grep -q "\"$key\"" v.json || fail "v.json has no $key"
 done
-grep -q '</svg>' v.svg && grep -q '</svg>' v-residuals.svg || fail 'a chart is missing'
+[ "$(grep -c '</svg>' v/index.html)" -eq 2 ] || fail 'a chart is missing'
+# The page's figures are those of the JSON; only the two largest residuals have markers.
+python3 - <<'PYTHON' || fail 'the page of a fit'
+import json, re
+page, fit = open("v/index.html").read(), json.load(open("v.json"))
+assert f'Off by at most <b>{fit["relative-error"]["max"]:.3g}</b>' in page
+for name, value in fit["coefficients"].items():
+    assert re.search(rf"<td>{name}</td><td>{value:.8g}", page), name
+assert page.count("translate(") == 2, page.count("translate(")
+PYTHON
 "$LACQUER" fit variance -o again.json >/dev/null
 cmp v.json again.json || fail 'the same fit gives other bits'
 "$LACQUER" fit variance --norm rms --loss 0.01 -o loss.json >out
@@ -88,6 +97,7 @@ refused '0.0001 <= A < B < 1' variance --range 0.5:0.2 -o x.json
 refused '0.0001 <= A < B < 1' variance --range 0.5:nan -o x.json
 refused 'curve of NDF beckmann is inf at' variance --ndf beckmann --range 0.01:0.9 -o x.json
 refused 'has no limit at alpha = 0' variance --ndf gtr:gamma=1 -o x.json
+refused 'cannot make the folder' variance --report missing/page -o x.json
 refused '--texture has no effect for this mapping' hg --texture x.exr -o x.json
 refused 'cannot write' variance -o missing/x.json
 [ ! -e x.json ] || fail 'a refused fit left a file'

@@ -1,5 +1,5 @@
 /* Charts: the file is whole, text is escaped, undrawable points are left out, hopeless input is refused. */
-#include "tables/plot.h"
+#include "picture/plot.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -81,6 +81,36 @@ static void test_linear_axes(void **state) {
     assert_null(strstr(text, "inf"));
 }
 
+/* Ten points in one place: their names would lie on each other. */
+static void test_labels_keep_apart(void **state) {
+    (void)state;
+    const double a[6] = {1.0, 1.0, 1.0, 1.0, 1.0, 2.0}, b[6] = {1.0, 1.0, 1.0, 1.0, 1.0, 2.0};
+    const char *const labels[6] = {"AAAAAAAAAA", "AAAAAAAAAA", "AAAAAAAAAA",
+                                   "AAAAAAAAAA", "AAAAAAAAAA", NULL};
+    const lq_plot_line series = {
+        .name = "crowd", .count = 6, .x = a, .y = b, .labels = labels, .curve = true};
+    lq_plot plot = chart(&series);
+    plot.title = "a title of more than a hundred and twenty characters, which would be cut off at the right "
+                 "edge if it "
+                 "were not put on two lines";
+    assert_int_equal(lq_plot_write(&plot, path, NULL), LQ_OK);
+    const char *text = read_chart();
+    double last_x[6], last_y[6];
+    size_t count = 0;
+    for (const char *at = text; (at = strstr(at, "class=\"soft halo\"")); at++) {
+        const char *start = at;
+        while (strncmp(start, "<text", 5) != 0) start--;
+        assert_int_equal(sscanf(start, "<text x=\"%lf\" y=\"%lf\"", &last_x[count], &last_y[count]), 2);
+        for (size_t k = 0; k < count; k++)
+            assert_true(fabs(last_x[k] - last_x[count]) > 6.0 || fabs(last_y[k] - last_y[count]) > 12.0);
+        count++;
+    }
+    assert_true(count >= 2 && count <= 5);
+    assert_int_equal(occurrences(text, "translate("),
+                     5); /* the sixth has no name, and the curve no marker there */
+    assert_int_equal(occurrences(text, "font-weight:600"), 2);
+}
+
 static void test_refusals(void **state) {
     (void)state;
     lq_error error;
@@ -107,6 +137,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_chart),
         cmocka_unit_test(test_linear_axes),
+        cmocka_unit_test(test_labels_keep_apart),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_powers),
     };

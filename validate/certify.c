@@ -140,6 +140,7 @@ static lq_status certify_pack(const lq_certifying *asked, const char *folder, lq
     lq_pack pack;
     lq_status status = lq_pack_read(&pack, folder, error);
     if (status != LQ_OK) return status;
+    snprintf(made->name, sizeof made->name, "%s", pack.name);
     status = lq_certify_materials(asked, &pack, made, error);
     if (status == LQ_OK) status = make_room(made, pack.count, error);
     for (size_t i = 0; i < pack.count && status == LQ_OK; i++)
@@ -149,10 +150,17 @@ static lq_status certify_pack(const lq_certifying *asked, const char *folder, lq
     return status;
 }
 
+/* The last part of a path; a pack has a name of its own. */
+static void name_by_path(lq_certificates *made, const char *path) {
+    const char *last = strrchr(path, '/');
+    snprintf(made->name, sizeof made->name, "%s", last && last[1] ? last + 1 : path);
+}
+
 lq_status lq_certify_read(const lq_certifying *asked, const char *path, lq_certificates **made,
                           lq_error *error) {
     lq_certificates *m = *made = calloc(1, sizeof *m);
     if (!m) return lq_fail(error, LQ_NO_MEMORY, "out of memory");
+    name_by_path(m, path);
     if (is_folder(path) && asked->table)
         return lq_fail(error, LQ_BAD_INPUT, "the table of factors needs a factor file; '%.200s' is a folder",
                        path);
@@ -238,7 +246,7 @@ static lq_certificate of_table(const lq_certified *t) {
 
 static lq_certificate of_material(const lq_certified_material *m) {
     return (lq_certificate){.name = m->name,
-                            .passed = m->kept,
+                            .passed = !lq_material_failure(m),
                             .points = m->measure.points,
                             .rms = m->measure.rms,
                             .p99 = m->measure.p99,
@@ -252,21 +260,27 @@ bool lq_certificates_get(const lq_certificates *c, size_t i, lq_certificate *cer
     return true;
 }
 
+static lq_report report_of(const lq_certificates *c, const char *date) {
+    return (lq_report){c->name, date ? date : "", c->count, c->tables, c->material_count, c->materials};
+}
+
 bool lq_certificates_passed(const lq_certificates *c) {
-    bool passed = true;
-    for (size_t i = 0; i < c->count; i++) passed = passed && !lq_certified_failure(&c->tables[i]);
-    for (size_t i = 0; i < c->material_count; i++) passed = passed && c->materials[i].kept;
-    return passed;
+    const lq_report report = report_of(c, NULL);
+    return lq_report_failures(&report) == 0;
 }
 
 lq_status lq_certificates_json(const lq_certificates *c, char **text, lq_error *error) {
-    return lq_report_json(c->tables, c->count, text, error);
+    const lq_report report = report_of(c, NULL);
+    return lq_report_json(&report, text, error);
 }
 
 lq_status lq_certificates_junit(const lq_certificates *c, const char *path, lq_error *error) {
-    return lq_report_junit(c->tables, c->count, path, error);
+    const lq_report report = report_of(c, NULL);
+    return lq_report_junit(&report, path, error);
 }
 
-lq_status lq_certificates_page(const lq_certificates *c, const char *folder, lq_error *error) {
-    return lq_report_html(c->tables, c->count, folder, error);
+lq_status lq_certificates_page(const lq_certificates *c, const char *folder, const char *date,
+                               lq_error *error) {
+    const lq_report report = report_of(c, date);
+    return lq_report_html(&report, folder, error);
 }

@@ -2,9 +2,8 @@
 #ifndef LACQUER_VALIDATE_CERTIFY_H
 #define LACQUER_VALIDATE_CERTIFY_H
 
-#include "pack/lobes_measure.h"
 #include "system/watch.h"
-#include "validate/certificate_checks.h"
+#include "validate/certificate_material.h"
 
 /* lq_certify_options, read. */
 typedef struct lq_certifying {
@@ -21,18 +20,8 @@ typedef struct lq_certifying {
     lq_watch watch;
 } lq_certifying;
 
-enum { LQ_CERTIFIED_AXIS = 48 }; /* as long as the name of a range */
-
-/* One material of a pack, solved anew where a shader may ask. */
-typedef struct lq_certified_material {
-    char name[LQ_NAME_SIZE];
-    int axis_count; /* mu, then the ranges of the material */
-    char axes[LQ_LOBES_AXES][LQ_CERTIFIED_AXIS];
-    lq_lobes_measure measure;
-    bool kept; /* its budget */
-} lq_certified_material;
-
 struct lq_certificates {
+    char name[256]; /* of the file, folder or pack */
     size_t count, material_count;
     lq_certified *tables;
     lq_certified_material *materials;

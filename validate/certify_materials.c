@@ -20,12 +20,6 @@ static lq_budget budget_for(const lq_certifying *asked, const lq_shipped_materia
     return budget;
 }
 
-static bool keeps(const lq_budget *budget, const lq_lobes_measure *m) {
-    const double p99 = budget->bound[LQ_NORM_P99], max = budget->bound[LQ_NORM_MAX];
-    const double rms = budget->bound[LQ_NORM_RMS];
-    return !(p99 > 0.0 && m->p99 > p99) && !(max > 0.0 && m->max > max) && !(rms > 0.0 && m->rms > rms);
-}
-
 static lq_status solve(const lq_certifying *asked, const lq_pack *pack, const lq_material **materials,
                        lq_lobes_exact *exact, lq_error *error) {
     const size_t wanted = asked->points / POINTS_PER_SET;
@@ -41,15 +35,12 @@ static lq_status solve(const lq_certifying *asked, const lq_pack *pack, const lq
 
 static lq_status judge(const lq_certifying *asked, const lq_lobes_exact *exact, size_t i,
                        const lq_shipped_material *shipped, lq_certified_material *made, lq_error *error) {
-    const lq_budget budget = budget_for(asked, shipped);
-    const lq_status status = lq_lobes_measure_one(exact, i, &shipped->lobes, &made->measure, error);
+    made->budget = budget_for(asked, shipped);
+    made->range_count = shipped->material.range_count;
     snprintf(made->name, sizeof made->name, "%s", shipped->name);
-    made->axis_count = 1 + shipped->material.range_count;
-    for (int a = 0; a < made->axis_count; a++)
-        snprintf(made->axes[a], sizeof made->axes[a], "%s",
-                 a == 0 ? "mu" : shipped->material.ranges[a - 1].name);
-    made->kept = status == LQ_OK && keeps(&budget, &made->measure);
-    return status;
+    for (int r = 0; r < made->range_count; r++)
+        snprintf(made->ranges[r], sizeof made->ranges[r], "%s", shipped->material.ranges[r].name);
+    return lq_lobes_measure_one(exact, i, &shipped->lobes, &made->measure, error);
 }
 
 lq_status lq_certify_materials(const lq_certifying *asked, const lq_pack *pack, lq_certificates *made,

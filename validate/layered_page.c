@@ -6,22 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "picture/document.h"
 #include "system/status.h"
 #include "system/stream.h"
 
 static const char *const sides[LQ_GONIO_SIDES] = {"reflected", "transmitted"};
-
-static const char style[] =
-    "body{font:15px/1.5 system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif;margin:2em "
-    "auto;max-width:90em;padding:0 1em;background:#fcfcfb;color:#1a1a19}\n"
-    "table{border-collapse:collapse;margin:1em 0;font-variant-numeric:tabular-nums}\n"
-    "th,td{padding:.15em .7em;text-align:right;border-bottom:1px solid #e6e5e0}"
-    "th:first-child,td:first-child{text-align:left}td.best{font-weight:600;color:#0f6b4f}\n"
-    ".soft{color:#63625e}.row{display:flex;flex-wrap:wrap;gap:.8em;margin:.6em 0}"
-    "figure{margin:0}figcaption{font-size:12px;max-width:270px}"
-    "img.slice{width:270px;image-rendering:pixelated;display:block}\n"
-    "@media (prefers-color-scheme:dark){body{background:#1a1a19;color:#f4f3ef}th,td{border-color:#33332f}"
-    ".soft{color:#b3b2ab}td.best{color:#35b78f}a{color:#9db7ff}}\n";
 
 static const char intro[] =
     "<p>RMSE (Ba19 eq. 4): root mean square over 90 &times; 360 cells of direction of what a model's f cos "
@@ -52,9 +41,9 @@ double lq_layered_median(const double *values, size_t count, size_t step, const 
  * ====================================================================================== */
 
 static void put_head(FILE *out, const lq_layered_request *r, const char *first) {
-    fprintf(out, "<table><tr><th>%s</th>", first);
-    for (size_t m = 0; m < r->model_count; m++) fprintf(out, "<th>%s</th>", r->models[m].label);
-    fputs("</tr>\n", out);
+    const char *heads[1 + LQ_LAYERED_MODELS] = {first};
+    for (size_t m = 0; m < r->model_count; m++) heads[1 + m] = r->models[m].label;
+    lq_document_table(out, heads, 1 + r->model_count);
 }
 
 static void put_median(FILE *out, const lq_layered_request *r, const lq_layered_sums *sums,
@@ -107,16 +96,17 @@ static bool is_curve(const lq_layered_stack *stack) {
 
 static void put_tables(FILE *out, const lq_layered_request *r, const lq_layered_sums *sums) {
     const lq_layered_set *set = r->set;
-    fputs("<h2>Medians</h2>\n", out);
+    lq_document_heading(out, 2, NULL, "Medians");
     put_head(out, r, "category");
     for (size_t i = 0; i < set->count; i++)
         if (!seen_before(set, i) && !is_curve(&set->stacks[i]))
             put_median(out, r, sums, set->stacks[i].category);
-    fputs("</table>\n<h2>Every stack</h2>\n", out);
+    lq_document_table_end(out);
+    lq_document_heading(out, 2, NULL, "Every stack");
     put_head(out, r, "stack");
     for (size_t i = 0; i < set->count; i++)
         if (!is_curve(&set->stacks[i])) put_stack_row(out, r, sums, i);
-    fputs("</table>\n", out);
+    lq_document_table_end(out);
 }
 
 /* ======================================================================================
@@ -170,17 +160,18 @@ static void put_curves(FILE *out, const lq_layered_set *set) {
 
 lq_status lq_layered_page(const lq_layered_request *r, json_t *figures, const lq_layered_sums *sums,
                           lq_error *error) {
-    char path[5000];
+    char path[5000], title[160];
     lq_stream stream;
     snprintf(path, sizeof path, "%.4000s/index.html", r->folder);
     const lq_status opened = lq_stream_open(&stream, path, error);
     if (opened != LQ_OK) return opened;
+    snprintf(title, sizeof title, "Layered models on the set %.80s", r->set->name);
+    lq_document_begin(stream.out, title);
     fprintf(stream.out,
-            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Models on %s</title>\n"
-            "<style>\n%s</style></head><body>\n<h1>Layered models on the set %s</h1>\n<p>lacquer " LQ_VERSION
+            "<p>lacquer " LQ_VERSION
             ", %zu walks a slice, seed %llu. <a href=\"figures.csv\">figures.csv</a>, "
             "<a href=\"lobes.csv\">lobes.csv</a>, <a href=\"figures.json\">figures.json</a></p>\n",
-            r->set->name, style, r->set->name, r->samples, (unsigned long long)r->seed);
+            r->samples, (unsigned long long)r->seed);
     showing s = {.out = stream.out, .request = r};
     const bool slices = !is_curve(&r->set->stacks[0]);
     if (slices) {
@@ -190,6 +181,6 @@ lq_status lq_layered_page(const lq_layered_request *r, json_t *figures, const lq
     put_curves(stream.out, r->set);
     lq_layered_rows(figures, show, &s);
     if (s.stack) fputs("</div></div>\n", stream.out);
-    fputs("</body></html>\n", stream.out);
+    lq_document_end(stream.out);
     return lq_stream_close(&stream, LQ_OK, error);
 }

@@ -85,15 +85,34 @@ static json_t *certified_json(const lq_certified *certified) {
     return root;
 }
 
-lq_status lq_report_json(const lq_certified *list, size_t count, char **text, lq_error *error) {
-    bool passed = true;
-    json_t *tables = json_array();
-    for (size_t i = 0; i < count; i++) {
-        lq_json_append(&tables, certified_json(&list[i]));
-        passed = passed && !lq_certified_failure(&list[i]);
-    }
-    json_t *root =
-        json_pack("{s:f, s:b, s:o}", "confidence", LQ_CONFIDENCE, "passed", passed, "tables", tables);
+static json_t *bounds_json(const lq_budget *budget) {
+    json_t *root = json_object();
+    for (int n = 0; n < LQ_NORMS; n++)
+        if (budget->bound[n] > 0.0 && isfinite(budget->bound[n]))
+            lq_json_set(&root, lq_norm_name((lq_norm)n), lq_json_number(budget->bound[n]));
+    return root;
+}
+
+static json_t *material_json(const lq_certified_material *m) {
+    const char *failure = lq_material_failure(m);
+    json_t *worst = json_pack("{s:o}", "mu", lq_json_number(m->measure.worst[0]));
+    for (int r = 0; r < m->range_count; r++)
+        lq_json_set(&worst, m->ranges[r], lq_json_number(m->measure.worst[1 + r]));
+    return json_pack("{s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:b, s:o}", "material", lq_json_text(m->name),
+                     "points", (json_int_t)m->measure.points, "max", lq_json_number(m->measure.max), "p99",
+                     lq_json_number(m->measure.p99), "rms", lq_json_number(m->measure.rms), "worst", worst,
+                     "budget", bounds_json(&m->budget), "passed", !failure, "complaint",
+                     failure ? lq_json_text(failure) : json_null());
+}
+
+lq_status lq_report_json(const lq_report *report, char **text, lq_error *error) {
+    json_t *tables = json_array(), *materials = json_array();
+    for (size_t i = 0; i < report->count; i++) lq_json_append(&tables, certified_json(&report->list[i]));
+    for (size_t i = 0; i < report->material_count; i++)
+        lq_json_append(&materials, material_json(&report->materials[i]));
+    json_t *root = json_pack("{s:o, s:f, s:b, s:o, s:o}", "name", lq_json_text(report->name), "confidence",
+                             LQ_CONFIDENCE, "passed", lq_report_failures(report) == 0, "tables", tables,
+                             "materials", materials);
     *text = lq_json_dump(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     return *text ? LQ_OK : lq_fail(error, LQ_NO_MEMORY, "no memory for a report");
 }

@@ -2,7 +2,7 @@
 #include "validate/report_ranks.h"
 
 #include "pca/factors.h"
-#include "tables/plot.h"
+#include "picture/plot.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -92,9 +92,9 @@ lq_status lq_report_ranks(const lq_rank *ranks, size_t count, FILE *out, lq_erro
         p99[i] = ranks[i].p99;
         rms[i] = ranks[i].rms;
     }
-    const lq_plot_line series[] = {{"max", count, bytes, max, NULL, 1, false},
-                                   {"p99", count, bytes, p99, NULL, 2, false},
-                                   {"rms", count, bytes, rms, NULL, 0, false}};
+    const lq_plot_line series[] = {{.name = "max", .count = count, .x = bytes, .y = max, .hue = 1},
+                                   {.name = "p99", .count = count, .x = bytes, .y = p99, .hue = 2},
+                                   {.name = "rms", .count = count, .x = bytes, .y = rms}};
     const lq_plot plot = {.title = "Terms, bytes and error",
                           .subtitle = "the first terms of every sum; the last point is the file as it is",
                           .x = {"bytes in half precision", false},

@@ -1,9 +1,9 @@
 /* print.c - the figures of `lacquer bench`: text, CSV and the chart. */
 #include "program/bench/bench.h"
 
+#include "picture/plot.h"
 #include "system/output.h"
 #include "tables/origin.h"
-#include "tables/plot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -128,10 +128,10 @@ lq_status bench_write_svg(const bench_job *job, lq_error *error) {
     gather(job, false, &solver);
     gather(job, true, &walk);
     const lq_plot_line series[] = {
-        {"solver at tolerance, rms", solver.count, solver.cost, solver.rms, solver.labels, 0, false},
-        {"largest", solver.count, solver.cost, solver.max, NULL, 0, true},
-        {"random walk of N samples, rms", walk.count, walk.cost, walk.rms, walk.labels, 1, false},
-        {"largest", walk.count, walk.cost, walk.max, NULL, 1, true},
+        {"solver at tolerance, rms", solver.count, solver.cost, solver.rms, solver.labels, .hue = 0},
+        {"largest", solver.count, solver.cost, solver.max, .hue = 0, .secondary = true},
+        {"random walk of N samples, rms", walk.count, walk.cost, walk.rms, walk.labels, .hue = 1},
+        {"largest", walk.count, walk.cost, walk.max, .hue = 1, .secondary = true},
     };
     char table[LINE], title[2 * LINE], machine[LINE], ratio[LINE];
     lq_origin_describe(job->kind, &job->options.settings, table, sizeof table);

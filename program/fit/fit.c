@@ -47,7 +47,7 @@ static const cli_option options[] = {
      CLI_CHOICE(fit_request, norm, norms), .modes = VARIANCE | MAPPING | BOUNCES},
     {LOSS, "loss", "S", "Cauchy loss of that scale on relative residuals (with --norm rms)",
      CLI_NUMBER(fit_request, loss, 1e-6, 1e3), .modes = VARIANCE | MAPPING | BOUNCES},
-    {REPORT, "report", "FILE.svg", "charts: curve and fits; FILE-residuals.svg",
+    {REPORT, "report", "DIR", "write a web page, DIR/index.html: errors, curve and fits, coefficients",
      CLI_TEXT(fit_request, report), .modes = VARIANCE | MAPPING},
     {TEXTURE, "texture", "FILE", "variance: log2 f over alpha, .exr or .npy; FILE-inverse",
      CLI_TEXT(fit_request, texture), .modes = VARIANCE},
@@ -89,7 +89,7 @@ const cli_verb cli_verb_fit = {
     .options = options,
     .option_count = CLI_COUNTED(options),
     .notes = print_notes,
-    .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance.svg\n"
+    .examples = "lacquer fit variance -o variance.json --snippet variance.glsl --report variance\n"
                 "lacquer fit variance --ndf gtr:gamma=3 --texture f.exr -o gtr.json\n"
                 "lacquer fit hg --family b18 -o hg.json\n"
                 "lacquer fit transmission -o transmission.json\n"
@@ -136,10 +136,10 @@ static bool suits(const fit_request *request, const cli_given *given) {
 }
 
 static bool files_can_be_written(const fit_request *request) {
-    const char *const files[] = {request->output, request->report, request->texture, request->snippet};
-    for (int i = 0; i < 4; i++)
+    const char *const files[] = {request->output, request->texture, request->snippet};
+    for (int i = 0; i < 3; i++)
         if (files[i] && !cli_output_check(files[i])) return false;
-    return true;
+    return !request->report || cli_report_folder(request->report);
 }
 
 static bool parse(fit_request *request, int argc, char **argv) {

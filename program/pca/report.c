@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "picture/plot.h"
 #include "program/message.h"
+#include "program/output.h"
 #include "program/pca/pca.h"
 #include "system/output.h"
-#include "tables/plot.h"
+#include "system/status.h"
 
 static const char *const value_names[LQ_VALUES] = {"plain", "square", "beer"};
 
@@ -83,42 +85,109 @@ static lq_status write_csv(const char *path, const lq_table *table, const lq_pca
     return status;
 }
 
+/* ------------------------------------------------------------------- chart */
+
+static double norm_of(const lq_pca_try *t, lq_pca_norm norm) {
+    return norm == LQ_PCA_RMS ? t->errors.rms : norm == LQ_PCA_P99 ? t->errors.p99 : t->errors.max;
+}
+
 static int by_bytes(const void *a, const void *b) {
     const lq_pca_try *x = a, *y = b;
     return (x->bytes > y->bytes) - (x->bytes < y->bytes);
 }
 
-static lq_status write_svg(const pca_request *request, const lq_pca_try *tries, size_t count,
-                           lq_error *error) {
-    lq_pca_try *sorted = malloc((count + 1) * sizeof *sorted);
-    double *x = malloc(4 * (count + 1) * sizeof *x);
-    if (!sorted || !x) {
-        free(sorted);
-        free(x);
-        snprintf(error->text, sizeof error->text, "no memory for a chart");
-        return LQ_NO_MEMORY;
+enum { TRIED, FRONTIER, CHOSEN, SERIES };
+
+/* Points of the chart and their names. */
+typedef struct chart {
+    size_t count[SERIES];
+    double *x[SERIES], *y[SERIES];
+    char (*names)[160];
+    const char **labels[SERIES];
+} chart;
+
+static bool chart_open(chart *c, size_t count) {
+    bool fine = (c->names = calloc(count + 1, sizeof *c->names)) != NULL;
+    for (int k = 0; k < SERIES; k++) {
+        fine = (c->x[k] = calloc(count + 1, sizeof(double))) && fine;
+        fine = (c->y[k] = calloc(count + 1, sizeof(double))) && fine;
+        fine = (c->labels[k] = calloc(count + 1, sizeof(char *))) && fine;
     }
-    double *max = x + count, *rms = max + count, *p99 = rms + count;
-    memcpy(sorted, tries, count * sizeof *sorted);
-    qsort(sorted, count, sizeof *sorted, by_bytes);
-    for (size_t t = 0; t < count; t++) {
-        x[t] = (double)sorted[t].bytes;
-        max[t] = sorted[t].errors.max;
-        p99[t] = sorted[t].errors.p99;
-        rms[t] = sorted[t].errors.rms;
+    return fine;
+}
+
+static void chart_close(chart *c) {
+    for (int k = 0; k < SERIES; k++) {
+        free(c->x[k]);
+        free(c->y[k]);
+        free(c->labels[k]);
     }
-    const lq_plot_line series[] = {{"max", count, x, max, NULL, 0, false},
-                                   {"p99", count, x, p99, NULL, 1, false},
-                                   {"rms", count, x, rms, NULL, 2, false}};
-    const lq_plot plot = {.title = "error of the factors tried",
-                          .subtitle = request->input,
+    free(c->names);
+}
+
+static void add_point(chart *c, int series, const lq_pca_try *t, double error, const char *name) {
+    const size_t i = c->count[series]++;
+    c->x[series][i] = (double)t->bytes;
+    c->y[series][i] = error;
+    c->labels[series][i] = name;
+}
+
+/* On the frontier: fewer bytes are nowhere as exact. `sorted` by bytes. */
+static void gather(chart *c, const lq_table *table, const lq_pca_try *sorted, size_t count,
+                   lq_pca_norm norm) {
+    double least = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const double error = norm_of(&sorted[i], norm);
+        pca_describe(table, &sorted[i].options, c->names[i], sizeof c->names[i]);
+        add_point(c, TRIED, &sorted[i], error, NULL);
+        if (sorted[i].chosen) add_point(c, CHOSEN, &sorted[i], error, c->names[i]);
+        if (!(error < least)) continue;
+        least = error;
+        add_point(c, FRONTIER, &sorted[i], error, sorted[i].chosen ? NULL : c->names[i]);
+    }
+}
+
+static lq_status draw_svg(const pca_request *request, const chart *c, lq_error *error) {
+    static const char *const norms[] = {
+        [LQ_PCA_RMS] = "rms error", [LQ_PCA_P99] = "p99 of the error", [LQ_PCA_MAX] = "largest error"};
+    static const char *const names[SERIES] = {"tried", "no smaller is better", "chosen"};
+    static const int hues[SERIES] = {[TRIED] = 0, [FRONTIER] = 2, [CHOSEN] = 1};
+    char budget[64];
+    lq_plot_line series[SERIES];
+    for (int k = 0; k < SERIES; k++)
+        series[k] = (lq_plot_line){.name = names[k],
+                                   .count = c->count[k],
+                                   .x = c->x[k],
+                                   .y = c->y[k],
+                                   .labels = c->labels[k],
+                                   .hue = hues[k],
+                                   .scatter = k == TRIED};
+    snprintf(budget, sizeof budget, "budget %g", request->budget);
+    const lq_plot_rule rule = {request->budget, budget};
+    const lq_plot plot = {.title = "Bytes against error of the factors tried",
+                          .subtitle = cli_basename(request->input),
                           .x = {"bytes in half floats", true},
-                          .y = {"error", true},
+                          .y = {norms[request->norm], true},
                           .series = series,
-                          .series_count = 3};
-    const lq_status status = lq_plot_write(&plot, request->svg, error);
+                          .series_count = SERIES,
+                          .rule = request->budget > 0.0 ? &rule : NULL};
+    return lq_plot_write(&plot, request->svg, error);
+}
+
+static lq_status write_svg(const pca_request *request, const lq_table *table, const lq_pca_try *tries,
+                           size_t count, lq_error *error) {
+    lq_pca_try *sorted = malloc((count + 1) * sizeof *sorted);
+    chart c = {.names = NULL};
+    lq_status status = LQ_OK;
+    if (!chart_open(&c, count) || !sorted) status = lq_fail(error, LQ_NO_MEMORY, "no memory for a chart");
+    if (status == LQ_OK) {
+        memcpy(sorted, tries, count * sizeof *sorted);
+        qsort(sorted, count, sizeof *sorted, by_bytes);
+        gather(&c, table, sorted, count, request->norm);
+        status = draw_svg(request, &c, error);
+    }
+    chart_close(&c);
     free(sorted);
-    free(x);
     return status;
 }
 
@@ -131,7 +200,7 @@ bool pca_report(const pca_request *request, const lq_table *table, const lq_pca_
     print_tries(table, tries, count);
     lq_status status = LQ_OK;
     if (request->csv) status = write_csv(request->csv, table, tries, count, &error);
-    if (status == LQ_OK && request->svg) status = write_svg(request, tries, count, &error);
+    if (status == LQ_OK && request->svg) status = write_svg(request, table, tries, count, &error);
     if (status != LQ_OK) cli_fail_status(status, &error);
     return status == LQ_OK;
 }

@@ -2,6 +2,7 @@
  * them. */
 #include "program/validate/certify.h"
 
+#include "program/date.h"
 #include "program/message.h"
 #include "program/progress.h"
 
@@ -42,7 +43,10 @@ static int report(const certify_request *request, const lq_certificates *made) {
         free(text);
     }
     if (status == LQ_OK && request->junit) status = lq_certificates_junit(made, request->junit, &error);
-    if (status == LQ_OK && request->report) status = lq_certificates_page(made, request->report, &error);
+    char date[CLI_DATE_SIZE];
+    cli_date(date);
+    if (status == LQ_OK && request->report)
+        status = lq_certificates_page(made, request->report, date, &error);
     return status == LQ_OK ? CLI_DONE : cli_fail_status(status, &error);
 }
 

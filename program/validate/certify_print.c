@@ -82,10 +82,10 @@ void certify_print_text(const lq_certified *certified) {
 }
 
 static void print_material(const lq_certified_material *m) {
-    printf("  %-6s  %-20s %6zu %9.2e %9.2e %9.2e  at", m->kept ? "passed" : "FAILED", m->name,
-           m->measure.points, m->measure.rms, m->measure.p99, m->measure.max);
-    for (int a = 0; a < m->axis_count; a++) printf(" %s=%.3g", m->axes[a], m->measure.worst[a]);
-    putchar('\n');
+    char at[160];
+    lq_material_worst(m, at, sizeof at);
+    printf("  %-6s  %-20s %6zu %9.2e %9.2e %9.2e  at %s\n", lq_material_failure(m) ? "FAILED" : "passed",
+           m->name, m->measure.points, m->measure.rms, m->measure.p99, m->measure.max, at);
 }
 
 void certify_print_materials(const lq_certificates *made) {
