@@ -141,10 +141,11 @@ static void draw_axes(FILE *out, const lq_plot *plot, const lq_plot_scale *x, co
 
 static void draw_series(FILE *out, const lq_plot *plot, const lq_plot_line *series, const lq_plot_scale *x,
                         const lq_plot_scale *y) {
-    fprintf(out, "<g class=\"h%d\"%s>\n", series->hue, series->scatter ? " opacity=\"0.55\"" : "");
+    fprintf(out, "<g class=\"h%d\"%s>\n", series->hue,
+            series->scatter || series->under ? " opacity=\"0.55\"" : "");
     if (!series->scatter) {
-        fprintf(out, "<polyline fill=\"none\" stroke=\"currentColor\" stroke-width=\"2\"%s points=\"",
-                lq_plot_dashes(series));
+        fprintf(out, "<polyline fill=\"none\" stroke=\"currentColor\" stroke-width=\"%d\"%s points=\"",
+                series->under ? 7 : 2, lq_plot_dashes(series));
         for (size_t i = 0; i < series->count; i++)
             if (lq_plot_has(plot, series, i))
                 fprintf(out, "%.1f,%.1f ", lq_plot_at(x, series->x[i]), lq_plot_at(y, series->y[i]));

@@ -20,6 +20,7 @@ typedef struct lq_plot_line {
     const char *const *labels; /* a short text beside each point, or NULL; some may be NULL */
     int hue;                   /* 0 to LQ_PLOT_HUES - 1 */
     bool secondary;            /* dashed and hollow: the same thing measured another way */
+    bool under;                /* what the others are held against: wide and faint, below them */
     bool curve;                /* known everywhere: only points with a label have a marker */
     bool scatter;              /* points that no line joins, small and faint */
 } lq_plot_line;

@@ -96,8 +96,8 @@ void lq_plot_legend(FILE *out, const lq_plot *plot) {
         if (k > 0 && x + size > LQ_PLOT_WIDTH - 8) x = LQ_PLOT_LEFT, y += 16;
         fprintf(out, "<g class=\"h%d\">", series->hue);
         if (!series->scatter)
-            fprintf(out, "<path stroke=\"currentColor\" stroke-width=\"2\"%s d=\"M%.1f %.1fh28\"/>\n",
-                    lq_plot_dashes(series), x, y);
+            fprintf(out, "<path stroke=\"currentColor\" stroke-width=\"%d\"%s d=\"M%.1f %.1fh28\"/>\n",
+                    series->under ? 7 : 2, lq_plot_dashes(series), x, y);
         if (!series->curve) lq_plot_marker(out, series, x + 14, y);
         fputs("</g>\n", out);
         lq_plot_text(out, x + 36, y + 4, "class=\"ink\"", series->name);

@@ -70,15 +70,16 @@ text = open("page/index.html", encoding="utf-8").read()
 class Parser(html.parser.HTMLParser):
     def __init__(self):
         super().__init__()
-        self.open, self.maps, self.titles, self.cells = [], 0, [], 0
+        self.open, self.maps, self.titles, self.cells, self.rings = [], 0, [], 0, 0
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
         assert not {"src", "onclick"} & set(attributes) and tag not in ("script", "link", "img")
         assert not attributes.get("href", "#").startswith("http")
-        self.cells += tag == "rect" and attributes.get("class", "").startswith("e")
-        if tag not in ("meta", "rect", "path", "polyline"): self.open.append(tag)
+        if tag == "path" and "fill" in attributes: self.cells += attributes["d"].count("M")
+        self.rings += tag == "circle" and attributes["stroke"] == "#fff"
+        if tag not in ("meta", "rect", "path", "polyline", "circle"): self.open.append(tag)
     def handle_endtag(self, tag):
-        if tag not in ("rect", "path", "polyline"): assert self.open.pop() == tag, tag
+        if tag not in ("rect", "path", "polyline", "circle"): assert self.open.pop() == tag, tag
     def handle_data(self, data):
         if self.open and self.open[-1] == "title": self.titles.append(data)
 page = Parser()
@@ -86,7 +87,9 @@ page.feed(text)
 assert not page.open
 for pair in ("mu and alpha", "mu and eta", "alpha and eta"): assert f"largest error over {pair}" in page.titles, page.titles
 assert "Errors of the points" in page.titles and "Terms, bytes and error" in page.titles
-assert page.cells > 400
+assert page.cells > 400 and page.rings == 3 # the worst point, in each map
+assert '<b class="passed">Passed:</b>' in text and "<time datetime=" in text
+assert text.index("The worst is off by") < text.index("<section")
 PY
 
 # a budget file: what the table does not say comes from the top

@@ -57,7 +57,7 @@ static lq_status draw_points(const fit_job *job, const points *p, bool residual,
     char texts[SERIES][24];
     double *values[SERIES];
     lq_plot_line series[SERIES] = {
-        {.name = "exact"}, {.name = family->name, .hue = 1}, {.hue = 2, .secondary = true}};
+        {.name = "exact", .under = true}, {.name = family->name, .hue = 1}, {.hue = 2, .secondary = true}};
     series[PAPER].name = job->published >= 0 ? lq_family_at(job->published)->source : "";
     for (size_t k = 0; k < SERIES; k++) values[k] = p->numbers + (1 + k) * job->count;
     fill(job, p->numbers, values, residual);

@@ -136,6 +136,9 @@ static void add_point(chart *c, int series, const lq_pca_try *t, double error, c
 static void gather(chart *c, const lq_table *table, const lq_pca_try *sorted, size_t count,
                    lq_pca_norm norm) {
     double least = INFINITY;
+    size_t chosen = 0;
+    for (size_t i = 0; i < count; i++)
+        if (sorted[i].chosen) chosen = sorted[i].bytes;
     for (size_t i = 0; i < count; i++) {
         const double error = norm_of(&sorted[i], norm);
         pca_describe(table, &sorted[i].options, c->names[i], sizeof c->names[i]);
@@ -143,7 +146,7 @@ static void gather(chart *c, const lq_table *table, const lq_pca_try *sorted, si
         if (sorted[i].chosen) add_point(c, CHOSEN, &sorted[i], error, c->names[i]);
         if (!(error < least)) continue;
         least = error;
-        add_point(c, FRONTIER, &sorted[i], error, sorted[i].chosen ? NULL : c->names[i]);
+        add_point(c, FRONTIER, &sorted[i], error, sorted[i].bytes == chosen ? NULL : c->names[i]);
     }
 }
 
