@@ -113,7 +113,7 @@ static void put_verdict(FILE *out, const lq_packing *packing) {
         worst = m->max;
         name = packing->materials[i].from->name;
     }
-    fputs("<p class=\"verdict\"><b>Within its budget</b>", out);
+    fputs("<p class=\"verdict\"><b class=\"passed\">Within its budget</b>", out);
     if (isfinite(recipe->p99)) fprintf(out, ", 99 %% of errors at most %g", recipe->p99);
     if (isfinite(recipe->max)) fprintf(out, ", none above %g", recipe->max);
     fprintf(out,

@@ -167,6 +167,8 @@ static void put_map(FILE *out, const maps *m, const double *cells, int x, int y)
     fprintf(out, "<svg viewBox=\"0 0 %d %d\" width=\"%d\" height=\"%d\" role=\"img\">", LEFT + SIDE + 14,
             ABOVE + SIDE + BELOW, LEFT + SIDE + 14, ABOVE + SIDE + BELOW);
     fprintf(out, "<title>largest error over %s and %s</title>\n", m->axes[x].name, m->axes[y].name);
+    fprintf(out, "<rect class=\"bare\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n", LEFT, ABOVE, SIDE,
+            SIDE);
     for (int step = 0; step < SHADES; step++) put_shade(out, m, cells, step);
     put_axes(out, &m->axes[x], &m->axes[y]);
     put_worst(out, m, x, y);
