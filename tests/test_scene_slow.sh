@@ -86,9 +86,24 @@ python3 -c 'import json; m = json.load(open("out")); assert [f["name"] for f in 
     fail "info --format json of a pack"
 
 # ------------------------------------------------ read back
-run 0 validate pack --points 1000
+run 0 validate pack --points 1000 --junit said.xml --report said
 says '^  passed  varnish '
 says 'files as made'
+# Every report has the materials, and the same figures of them.
+run 0 validate pack --points 1000 --json
+python3 - <<'END' || fail "materials in the reports of a pack"
+import json, re, xml.etree.ElementTree as tree
+said, page = json.load(open("out")), open("said/index.html").read()
+assert said["name"] == "four" and said["passed"]
+assert [m["material"] for m in said["materials"]] == ["gold", "red-plastic", "varnish", "white"]
+suite = [s for s in tree.parse("said.xml").getroot() if s.get("name") == "materials"][0]
+assert len(suite) == 12 and suite.get("failures") == "0"
+for m in said["materials"]:
+    assert re.search(rf'<td>{m["material"]}</td><td class="passed">passed</td><td>{m["max"]:.2e}</td>', page), m
+END
+run 2 validate pack --points 1000 --budget max=1e-9 --json
+python3 -c 'import json; s = json.load(open("out")); assert not s["passed"] and not s["materials"][0]["passed"]' ||
+    fail "a material over its budget has passed"
 printf '\x3c' | dd of=pack/atlas.ktx2 bs=1 seek=3001 conv=notrunc 2>/dev/null
 run 2 validate pack --points 1000
 says 'FAILED  files as made'

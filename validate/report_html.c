@@ -57,8 +57,8 @@ static void put_verdict(FILE *out, const lq_report *report) {
         used = (size_t)lq_print(words, sizeof words, "%zu table%s", report->count,
                                 report->count == 1 ? "" : "s");
     if (report->material_count > 0)
-        used += (size_t)lq_print(words + used, sizeof words - used, "%s%zu materials", used ? ", " : "",
-                                 report->material_count);
+        used += (size_t)lq_print(words + used, sizeof words - used, "%s%zu material%s", used ? ", " : "",
+                                 report->material_count, report->material_count == 1 ? "" : "s");
     lq_print(words + used, sizeof words - used, ". The worst is off by %.2g, in %.100s at %s.", worst, name,
              at);
     lq_document_verdict(out, failures == 0, verdict, report->date, words);
