@@ -18,19 +18,6 @@ static const double width = LQ_PLOT_WIDTH, height = LQ_PLOT_HEIGHT, left = LQ_PL
  *                                    Scales and ticks
  * ====================================================================================== */
 
-static bool drawable(double v, bool logarithmic) {
-    return isfinite(v) && (!logarithmic || v > 0.0);
-}
-
-bool lq_plot_has(const lq_plot *plot, const lq_plot_line *series, size_t i) {
-    return drawable(series->x[i], plot->x.logarithmic) && drawable(series->y[i], plot->y.logarithmic);
-}
-
-double lq_plot_at(const lq_plot_scale *s, double v) {
-    const double at = s->logarithmic ? log10(v) : v;
-    return s->start + s->length * (at - s->low) / (s->high - s->low);
-}
-
 /* 1, 2 or 5 times a power of ten that cuts `range` into about `parts`. */
 static double nice_step(double range, double parts) {
     const double raw = range / parts;
@@ -57,6 +44,14 @@ static void include(lq_plot_scale *s, double v) {
     s->high = fmax(s->high, at);
 }
 
+/* A tick at `at`: 1, 10, 100 or 10 to a superscript power on a logarithmic axis, otherwise a plain number. */
+static void format_tick(char *text, const lq_plot_scale *s, double at) {
+    const double power = round(at);
+    if (!s->logarithmic) lq_print(text, 24, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
+    else if (power >= 0.0 && power <= 2.0) lq_print(text, 24, "%.0f", pow(10.0, power));
+    else lq_plot_power(text, (int)power);
+}
+
 /* False: no point can be drawn. */
 static bool make_scales(const lq_plot *plot, lq_plot_scale *x, lq_plot_scale *y) {
     *x = (lq_plot_scale){plot->x.logarithmic, INFINITY, -INFINITY, 1.0, left, width - left - right};
@@ -73,37 +68,6 @@ static bool make_scales(const lq_plot *plot, lq_plot_scale *x, lq_plot_scale *y)
     round_out(x);
     round_out(y);
     return true;
-}
-
-/* ======================================================================================
- *                                          Text
- * ====================================================================================== */
-
-void lq_plot_text(FILE *out, double x, double y, const char *attributes, const char *text) {
-    fprintf(out, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
-    lq_text_put(out, text);
-    fputs("</text>\n", out);
-}
-
-void lq_plot_power(char *text, int power) {
-    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    const int digits = abs(power) % 1000;
-    snprintf(text, 24, "10%s%s%s%s", power < 0 ? "⁻" : "", digits >= 100 ? raised[digits / 100] : "",
-             digits >= 10 ? raised[digits / 10 % 10] : "", raised[digits % 10]);
-}
-
-/* A tick at `at`: 1, 10, 100 or 10 to a superscript power on a logarithmic axis, otherwise a plain number. */
-static void format_tick(char *text, const lq_plot_scale *s, double at) {
-    const double power = round(at);
-    if (!s->logarithmic) lq_print(text, 24, "%.6g", fabs(at) < 1e-9 * s->step ? 0.0 : at);
-    else if (power >= 0.0 && power <= 2.0) lq_print(text, 24, "%.0f", pow(10.0, power));
-    else lq_plot_power(text, (int)power);
-}
-
-double lq_plot_text_width(const char *text) {
-    double characters = 0.0;
-    for (const char *c = text; *c; c++) characters += ((unsigned char)*c & 0xC0) != 0x80;
-    return 6.6 * characters;
 }
 
 /* ======================================================================================

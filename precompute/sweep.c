@@ -22,59 +22,6 @@ static size_t channels_of(const lq_sweep *s) {
 }
 
 /* ======================================================================================
- *                                        Parts
- * ====================================================================================== */
-
-/* A node of the table is kept as the table has it. */
-static bool is_node(const lq_sweep *s, size_t value) {
-    return s->along.node[value] < s->along.size;
-}
-
-static size_t number_size(const lq_sweep *s, size_t value) {
-    return is_node(s, value) ? sizeof(float) : sizeof(double);
-}
-
-/* Values that were solved in place of numbers of a part: floats need half the room. */
-static void narrow(void *bytes, size_t count) {
-    const double *from = bytes;
-    float *to = bytes;
-    for (size_t i = 0; i < count; i++) {
-        const float value = (float)from[i];
-        memcpy(&to[i], &value, sizeof value);
-    }
-}
-
-static lq_status make_part(void *user, size_t value, int thread, void **bytes, size_t *size,
-                           lq_error *error) {
-    (void)thread;
-    const lq_sweep *s = user;
-    const size_t count = channels_of(s) * s->entries;
-    double *part = malloc((1 + count) * sizeof *part), *values[LQ_MAX_CHANNELS];
-    *bytes = part;
-    if (!part) return lq_fail(error, LQ_NO_MEMORY, "no memory for a slice of %zu entries", s->entries);
-    for (size_t c = 0; c < channels_of(s); c++) values[c] = part + 1 + c * s->entries;
-    lq_status status = lq_job_prepare(&s->job, s->evaluator, value, error);
-    if (status == LQ_OK) status = s->evaluator->slice(&s->job, s->state, value, values, part, error);
-    if (status == LQ_OK && is_node(s, value)) narrow(part + 1, count);
-    *size = sizeof *part + count * number_size(s, value);
-    return status;
-}
-
-lq_status lq_sweep_read(const lq_sweep *s, size_t value, size_t channel, size_t from, size_t to,
-                        double *values, lq_error *error) {
-    const size_t part = s->along.same[value], size = number_size(s, part), count = to - from;
-    char *bytes = (char *)values + (sizeof(double) - size) * count;
-    const lq_status status = lq_parts_read(
-        s->parts, part, sizeof(double) + (channel * s->entries + from) * size, count * size, bytes, error);
-    for (size_t i = 0; size < sizeof(double) && i < count; i++) {
-        float narrow;
-        memcpy(&narrow, bytes + i * sizeof narrow, sizeof narrow);
-        values[i] = (double)narrow;
-    }
-    return status;
-}
-
-/* ======================================================================================
  *                                        Solves
  * ====================================================================================== */
 
@@ -101,8 +48,9 @@ static lq_status solve_turns(lq_sweep *s, const lq_progress *progress, lq_error 
     s->job.size[s->evaluator->slice_axis] = s->along.count;
     if (!turns) return lq_fail(error, LQ_NO_MEMORY, "no memory for %zu solves", s->done - first);
     const size_t count = list_turns(s, first, turns);
-    lq_status status =
-        count == 0 ? LQ_OK : lq_parts_make(s->parts, turns, count, s->threads, make_part, s, progress, error);
+    lq_status status = count == 0 ? LQ_OK
+                                  : lq_parts_make(s->parts, turns, count, s->threads, lq_sweep_make_part, s,
+                                                  progress, error);
     if (status == LQ_OK) status = read_estimates(s, first, error);
     free(turns);
     return status;
@@ -182,7 +130,7 @@ static lq_status settle_panels(lq_sweep *s, bool *settled, double *estimate, lq_
     *settled = true;
     *estimate = 0.0;
     for (size_t v = 0; v < s->done; v++)
-        if (is_node(s, v)) *estimate = fmax(*estimate, s->estimates[v]);
+        if (lq_sweep_is_node(s, v)) *estimate = fmax(*estimate, s->estimates[v]);
     for (int p = 0; status == LQ_OK && p < LQ_ALONG_PANELS; p++) {
         const lq_along_panel *panel = &s->along.panel[p];
         double missing;

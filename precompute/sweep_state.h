@@ -22,6 +22,13 @@ struct lq_sweep {
     double *estimates; /* of each value of `along` */
 };
 
+/* A value of `along` that is a node of the table: it is kept as the table has it. */
+bool lq_sweep_is_node(const lq_sweep *sweep, size_t value);
+
+/* Its slice as a part: the estimate, then the numbers of every channel (lq_parts_make). */
+lq_status lq_sweep_make_part(void *sweep, size_t value, int thread, void **bytes, size_t *size,
+                             lq_error *error);
+
 /* Of one value, positions `from` to `to` - 1 of a channel's slice. */
 lq_status lq_sweep_read(const lq_sweep *sweep, size_t value, size_t channel, size_t from, size_t to,
                         double *values, lq_error *error);

@@ -212,7 +212,8 @@ lq_status lq_model_solve(const lq_stack *stack, const lq_model_query *query, lq_
     lq_model_query mapped = *query;
     lq_model_mapping own;
     lq_status status = lq_model_check(stack, query, error);
-    if (lq_model_kinds[query->model].of_pairs || lq_model_kinds[query->model].anisotropic)
+    if (lq_model_kinds[query->model].of_pairs || lq_model_kinds[query->model].anisotropic ||
+        lq_model_kinds[query->model].windowed)
         return lq_fail(error, LQ_BAD_INPUT, "%s has no lobes that one roughness describes",
                        lq_model_names[query->model]);
     if (!query->mapping) {

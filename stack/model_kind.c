@@ -12,6 +12,7 @@ const char *const lq_model_names[LQ_MODELS + 1] = {
     [LQ_MODEL_WEIDLICH_WILKIE] = "weidlich-wilkie",
     [LQ_MODEL_WEIDLICH_WILKIE_CORRECTED] = "weidlich-wilkie-corrected",
     [LQ_MODEL_BAKED] = "baked",
+    [LQ_MODEL_BAKED_WINDOW] = "baked-window",
 };
 
 const lq_model_kind lq_model_kinds[LQ_MODELS] = {
@@ -34,6 +35,9 @@ const lq_model_kind lq_model_kinds[LQ_MODELS] = {
     [LQ_MODEL_WEIDLICH_WILKIE_CORRECTED] = {.title = "the same, refracted by the surface, 1/eta^2",
                                             .of_pairs = true},
     [LQ_MODEL_BAKED] = {.title = "what scenes bake: exact energies, roughness from exact spread"},
+    [LQ_MODEL_BAKED_WINDOW] = {.title =
+                                   "the same, inner light as two lobes inside the coat, a roughness a colour",
+                               .windowed = true},
 };
 
 lq_status lq_model_find(const char *name, lq_model_id *id, lq_error *error) {

@@ -13,6 +13,7 @@ typedef enum lq_model_id {
     LQ_MODEL_WEIDLICH_WILKIE,
     LQ_MODEL_WEIDLICH_WILKIE_CORRECTED,
     LQ_MODEL_BAKED,
+    LQ_MODEL_BAKED_WINDOW,
     LQ_MODELS
 } lq_model_id;
 
@@ -22,6 +23,7 @@ typedef struct lq_model_kind {
     bool one_coat;    /* over a Lambertian base, and no more */
     bool scattering;  /* of media, forward */
     bool anisotropic; /* of interfaces; model_shape.h alone has it */
+    bool windowed;    /* lobes inside a medium: model_shape.h alone has it */
     bool of_pairs;    /* each pair of directions has lobes of its own: model_shape.h alone has it */
 } lq_model_kind;
 

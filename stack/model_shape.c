@@ -44,7 +44,10 @@ static lq_model_query query_of(const lq_shape_query *query, lq_model_id model, c
 }
 
 static lq_status aim_lobes(lq_model_shape *shape, double mu, lq_error *error) {
-    const lq_model_query query = query_of(&shape->query, shape->query.model, &mu);
+    /* Below a coat over a Lambertian base there is no window: the model is baked then. */
+    const lq_model_id model =
+        lq_model_kinds[shape->query.model].windowed ? LQ_MODEL_BAKED : shape->query.model;
+    const lq_model_query query = query_of(&shape->query, model, &mu);
     const size_t all = shape->count * (size_t)shape->channels;
     lq_model_lobe *lobes = calloc(all, sizeof *lobes);
     lq_status status = lobes ? lq_model_solve(shape->stack, &query, lobes, NULL, error)
@@ -137,6 +140,49 @@ static lq_status aim_turned(lq_model_shape *shape, double mu, lq_error *error) {
 }
 
 /* ======================================================================================
+ *                                      Behind a window
+ * ====================================================================================== */
+
+static bool is_windowed(const lq_model_shape *shape) {
+    return lq_model_kinds[shape->query.model].windowed &&
+           shape->stack->layers[shape->stack->layer_count - 1].type != LQ_LAYER_LAMBERTIAN;
+}
+
+/* The top's lobe and the light that goes through as lobes in the direction of a mirror, and between them what
+ * was inside, as the last layer's. */
+static lq_status set_windowed(lq_model_shape *shape, int channel, double mu, const lq_windowed *from,
+                              lq_error *error) {
+    const lq_layer *layers = shape->stack->layers;
+    const size_t last = shape->stack->layer_count - 1;
+    lq_shape_lobe *lobes = shape->lobes + (size_t)channel * shape->count;
+    const double away = cosine_of(mu), below = fmin(away / layers[last].n.value[channel], 1.0);
+    const lq_model_lobe top = {.energy = from->top, .mean = away, .alpha = layers[0].alpha_x.value[channel]},
+                        through = {.energy = from->through, .mean = below, .alpha = from->through_alpha};
+    for (size_t k = 0; k < shape->count; k++) lobes[k] = (lq_shape_lobe){0};
+    lq_status status = make_lobe(&lobes[0], &top, &shape->query, error);
+    if (status == LQ_OK && layers[last].type == LQ_LAYER_DIELECTRIC)
+        status = make_lobe(&lobes[last + 1], &through, &shape->query, error);
+    if (last > 0 && from->inner.energy > 0.0)
+        lobes[last] = (lq_shape_lobe){.energy = from->inner.energy,
+                                      .alpha = from->inner.part[0].alpha,
+                                      .scale = 1.0,
+                                      .from = lq_incidence_of(mu),
+                                      .window = from->inner};
+    for (size_t k = 0; k < shape->count; k++)
+        if (lobes[k].energy > 0.0) shape->sharpest = fmin(shape->sharpest, lobes[k].alpha);
+    return status;
+}
+
+static lq_status aim_windowed(lq_model_shape *shape, double mu, lq_error *error) {
+    lq_windowed made[LQ_STACK_CHANNELS];
+    lq_status status =
+        lq_model_windowed(shape->stack, mu, least_alpha(&shape->query), shape->query.threads, made, error);
+    for (int c = 0; c < shape->channels && status == LQ_OK; c++)
+        status = set_windowed(shape, c, mu, &made[c], error);
+    return status;
+}
+
+/* ======================================================================================
  *                                      Rays and BRDFs
  * ====================================================================================== */
 
@@ -222,6 +268,7 @@ lq_status lq_model_shape_aim(lq_model_shape *shape, double mu, lq_error *error) 
     shape->sharpest = 1.0;
     const lq_status status = of_rays(shape)          ? aim_rays(shape, mu, error)
                              : is_anisotropic(shape) ? aim_turned(shape, mu, error)
+                             : is_windowed(shape)    ? aim_windowed(shape, mu, error)
                              : shape->grid.nodes > 0 ? aim_grid(shape, mu, error)
                                                      : aim_lobes(shape, mu, error);
     return status == LQ_OK ? aim_first(shape, error) : status;
@@ -269,6 +316,7 @@ double lq_model_shape_lobe(const lq_model_shape *shape, int channel, size_t k, d
     double scale = lobe->scale, alpha = lobe->alpha;
     if (!(scale > 0.0)) return 0.0;
     if (is_brdf(shape, k)) return scale * lq_weidlich_value(&shape->rays, channel, k, lobe->from, x, y, z);
+    if (lobe->window.n > 0.0) return lq_window_value(&lobe->window, lobe->from, x, y, z);
     if (lobe->turned) return scale * lq_lobe_turned_density(lobe->from, &lobe->ggx, x, y, z);
     if (shape->grid.nodes > 0) {
         const double half = lq_incidence_half(lobe->from, x, z);

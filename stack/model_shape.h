@@ -15,6 +15,8 @@
  *
  * Anisotropic lobes (y19) are normalised by a sum of their own, to some 1e-3.
  *
+ * baked-window has lobes inside a medium (model_window.h).
+ *
  * weidlich-wilkie and weidlich-wilkie-corrected are in weidlich.h.
  *
  * The first lobe of any model can be the BRDF of the top interface itself, F(h) D G2 / (4 mu_i mu_o), instead
@@ -23,6 +25,7 @@
 #ifndef LACQUER_STACK_MODEL_SHAPE_H
 #define LACQUER_STACK_MODEL_SHAPE_H
 
+#include "stack/model_window.h"
 #include "stack/model_y19.h"
 #include "stack/shape_grid.h"
 #include "stack/weidlich.h"
@@ -38,6 +41,7 @@ typedef enum lq_first_lobe { LQ_FIRST_OF_MODEL, LQ_FIRST_EXACT, LQ_FIRST_SCALED 
 typedef struct lq_shape_lobe {
     double energy, alpha;
     double scale;      /* energy / A */
+    lq_window window;  /* in place of a lobe of `alpha`, where its n is above 0 */
     lq_incidence from; /* what mirrors to its mean */
     bool turned;       /* anisotropic: `alpha` is the geometric mean of two */
     lq_turned_ggx ggx;

@@ -45,6 +45,7 @@ static lq_stack_lobe normalised(lq_stack_lobe sum, bool upright) {
 
 lq_stack_lobe lq_model_shape_moments(const lq_model_shape *shape, int channel, size_t k) {
     const lq_shape_lobe *lobe = &shape->lobes[(size_t)channel * shape->count + k];
+    if (lobe->scale > 0.0 && lobe->window.n > 0.0) return lq_window_light(&lobe->window, lobe->from.cosine);
     const lq_turned_ggx ggx = lobe->turned ? lobe->ggx : (lq_turned_ggx){lobe->alpha, lobe->alpha, 1.0, 0.0};
     lq_stack_lobe sum = {0};
     for (int r = 0; r < RINGS && lobe->scale > 0.0; r++)

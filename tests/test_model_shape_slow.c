@@ -130,6 +130,63 @@ static void test_baked_is_exact(void **state) {
     }
 }
 
+/* Behind a window as well; the two parts of what was inside have their own spread, which is theirs together.
+ * Over a Lambertian base it is baked. */
+static void test_baked_window_is_exact(void **state) {
+    (void)state;
+    static const char *const stacks[] = {FROSTED, SLAB};
+    const lq_shape_query query = {.model = LQ_MODEL_BAKED_WINDOW}, plain = {.model = LQ_MODEL_BAKED};
+    for (size_t i = 0; i < 2; i++)
+        for (double mu = 0.6; mu <= 1.0; mu += 0.4) {
+            const lq_stack_query light = {.mu = &mu, .mu_count = 1, .paths = 3};
+            lq_stack_light exact[3];
+            solve(stacks[i], &light, exact);
+            lq_model_shape shape = make(stacks[i], &query, mu);
+            const totals up = sum_up(&shape, 1.0, COARSE), down = sum_up(&shape, -1.0, COARSE);
+            double inner = 0.0, through = 0.0;
+            for (int p = 0; p < 3; p++) through += exact[p].transmitted.energy;
+            for (int p = 0; p < LQ_WINDOW_PARTS; p++) {
+                lq_window part = shape.lobes[1].window;
+                part.part[1 - p].energy = 0.0;
+                inner += exact[1 + p].reflected.energy;
+                if (part.part[p].alpha < 1.0)
+                    assert_near(lq_window_light(&part, mu).across, exact[1 + p].reflected.across, 1e-4);
+                else assert_true(lq_window_light(&part, mu).across < exact[1 + p].reflected.across);
+            }
+            const lq_stack_lobe sum = lq_window_light(&shape.lobes[1].window, mu);
+            assert_near(up.direct.energy, exact[0].reflected.energy, 3e-4);
+            assert_near(up.rest.energy, inner, 3e-4);
+            assert_near(up.rest.across / up.rest.energy, sum.across, 3e-4);
+            assert_near(up.rest.mean / up.rest.energy, sum.mean, 1e-3);
+            assert_near(down.rest.energy, through, 3e-4);
+            lq_model_shape_free(&shape);
+        }
+    lq_model_shape one = make(VARNISHED, &query, 0.6), other = make(VARNISHED, &plain, 0.6);
+    for (size_t k = 0; k < one.count; k++) assert_true(one.lobes[k].scale == other.lobes[k].scale);
+    lq_model_shape_free(&one);
+    lq_model_shape_free(&other);
+}
+
+/* Below a smooth coat light that was inside once has the form of a window, and nothing else is as narrow: the
+ * peak is that of the base's own facets, T(mu) D G2 / (4 mu_i') F / n^2. */
+static void test_window_below_a_smooth_coat(void **state) {
+    (void)state;
+    const double mu = 0.6, n = 1.5, alpha = 0.2, sine = 0.8, inside = sqrt(1.0 - sine * sine / (n * n));
+    const char *black = LAYERS(DIELECTRIC(1.5, 0) "," CONDUCTOR(0.2, 3.9, 0.2));
+    const lq_shape_query query = {.model = LQ_MODEL_BAKED_WINDOW};
+    lq_model_shape shape = make(black, &query, mu);
+    double direct[3], rest[3];
+    lq_model_shape_value(&shape, sine, 0.0, mu, direct, rest);
+    const double through = 1.0 - lq_fresnel_dielectric(mu, n, NULL);
+    const double base = lq_fresnel_conductor(inside, 0.2 / n, 3.9 / n);
+    const double once = through * through * base *
+                        lq_lobe_density((lq_incidence){inside, sine / n}, alpha, sine / n, 0.0, inside) * mu /
+                        (n * n * inside);
+    print_message("peak %.4f, of one bounce %.4f\n", rest[0], once);
+    assert_true(rest[0] > once && rest[0] < 1.2 * once);
+    lq_model_shape_free(&shape);
+}
+
 /* What one interface does has nothing that was inside, on either side. */
 static void test_one_interface_is_direct(void **state) {
     (void)state;
@@ -326,6 +383,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_energies_and_moments),
         cmocka_unit_test(test_baked_is_exact),
+        cmocka_unit_test(test_baked_window_is_exact),
+        cmocka_unit_test(test_window_below_a_smooth_coat),
         cmocka_unit_test(test_one_interface_is_direct),
         cmocka_unit_test(test_masked_lobes_lose_light),
         cmocka_unit_test(test_least_roughness),

@@ -43,6 +43,7 @@ run 0 stack a.json --model y19 --variant released --mu 0.6 --azimuth 90
 says '^0\.6 +1 +[0-9.]+ +[0-9.]+ +0\.30000 +0\.10000 +-90\.00$'
 run 0 stack --help
 says '^  baked '
+says '^  baked-window '
 
 # ------------------------------------------------------------------------------------------- tables of a pack
 echo '{"layers": [{"dielectric": {"n": 1.5, "alpha": 0.1}}, {"lambertian": {"rho": 0.7}}]}' >plastic.json

@@ -8,10 +8,6 @@
 
 #include <unistd.h>
 
-const char *lq_report_word(lq_outcome outcome) {
-    return outcome == LQ_PASSED ? "passed" : outcome == LQ_FAILED ? "failed" : "noted";
-}
-
 size_t lq_report_failures(const lq_report *report) {
     size_t failures = 0;
     for (size_t i = 0; i < report->count; i++) failures += lq_certified_failure(&report->list[i]) != NULL;

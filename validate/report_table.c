@@ -75,11 +75,6 @@ static lq_status put_ranks(FILE *out, const lq_certified *certified, lq_error *e
  *                                         Section
  * ====================================================================================== */
 
-const double *lq_report_worst(const lq_sampled *c) {
-    const size_t axes = (size_t)c->request.kind->axis_count;
-    return c->found.error >= c->total.max ? c->found.at : c->at + c->total.worst % c->points * axes;
-}
-
 static void put_summary(FILE *out, const lq_certified *certified) {
     const lq_sampled *c = &certified->certificate;
     const lq_check *failed = lq_certified_failure(certified);

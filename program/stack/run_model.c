@@ -68,7 +68,7 @@ lq_status model_run(model_result *r, const lq_progress *progress, lq_error *erro
         snprintf(error->text, sizeof error->text, "out of memory");
         return LQ_NO_MEMORY;
     }
-    return kind->of_pairs || kind->anisotropic || r->first != LQ_FIRST_OF_MODEL
+    return kind->of_pairs || kind->windowed || kind->anisotropic || r->first != LQ_FIRST_OF_MODEL
                ? run_shape(r, error)
                : run_lobes(r, progress, error);
 }
