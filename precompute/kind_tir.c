@@ -29,8 +29,9 @@ typedef struct outside {
 } outside;
 
 /* Terms of the lobe's series and nodes of its rings; the pass takes as many nodes a panel as there are terms.
- * All grow from row to row, or the error of one would not show in the difference. */
-static const int resolutions[][2] = {{8, 8}, {12, 10}, {16, 12}, {24, 16}, {32, 24}, {48, 32}};
+ * All grow from row to row by a third or more, or the error of one would not show in the difference: rings of
+ * 8 and 10 nodes were off alike, by 1e-5, where Student-t's lobe lies along the horizon. */
+static const int resolutions[][2] = {{8, 8}, {12, 12}, {16, 16}, {24, 24}, {32, 32}, {48, 48}};
 enum { RESOLUTIONS = sizeof resolutions / sizeof resolutions[0] };
 
 typedef struct resolution {
