@@ -6,6 +6,7 @@
 #include "program/crew.h"
 
 #include <mpi.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -103,6 +104,10 @@ int cli_crew_end(int code) {
         speak_after_all();
         MPI_Abort(MPI_COMM_WORLD, code);
     }
+    /* All is said: the first process to leave with a failure makes mpirun end the others, which is no
+     * interruption. */
+    signal(SIGTERM, SIG_DFL);
+    signal(SIGINT, SIG_DFL);
     MPI_Finalize();
     return code;
 }

@@ -8,7 +8,7 @@
 typedef struct lq_certified_material {
     char name[LQ_NAME_SIZE];
     int range_count;
-    char ranges[LQ_MATERIAL_RANGES][LQ_NAME_SIZE]; /* names of what is open */
+    char ranges[LQ_MATERIAL_RANGES][48]; /* names of what is open */
     lq_budget budget;
     lq_lobes_measure measure; /* against the exact stack */
 } lq_certified_material;
