@@ -1,4 +1,4 @@
-"""What `lacquer view` wrote, read back: pixels of a PNG, the numbers of a page. For tests/test_view.sh."""
+"""What `lacquer view` wrote, read back: pixels of a PNG, the numbers of a page. For tests/test_view_slow.sh."""
 import base64
 import html.parser
 import json
