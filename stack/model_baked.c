@@ -81,21 +81,18 @@ static lq_status read_through(const baking *b, size_t m, int channel, const lq_s
     const double mu = b->query->mu[m], below = sine_below(b->stack, mu, channel);
     const lq_stack_lobe *top = &paths[0].reflected, *inner = &paths[1].reflected;
     const lq_stack_lobe *one = &paths[0].transmitted, *more = &paths[1].transmitted;
-    const double through = one->energy + more->energy, cosine = lq_sine(below);
+    const double through = one->energy + more->energy;
     lq_model_lobe *lobes = lobes_at(b, m, channel);
-    lq_spread spread = {0};
-    const lq_status status = lq_spread_make(&spread, &cosine, 1, error);
-    if (status != LQ_OK) return status;
+    double alpha = 0.0;
     for (size_t k = 0; k <= last + 1; k++) lobes[k] = (lq_model_lobe){0};
     lobes[0] = lobe_of(top->energy, lq_sine(mu), b->stack->layers[0].alpha_x.value[channel]);
     if (last > 0)
         lobes[last] = lobe_of(inner->energy, lq_sine(mu), lq_spread_alpha(&b->spread, m, inner->across));
-    if (through > 0.0) {
-        const double across = (one->energy * one->across + more->energy * more->across) / through;
-        lobes[last + 1] = lobe_of(through, below, lq_spread_alpha(&spread, 0, across));
-    }
-    lq_spread_free(&spread);
-    return LQ_OK;
+    if (!(through > 0.0)) return LQ_OK;
+    const double across = (one->energy * one->across + more->energy * more->across) / through;
+    const lq_status status = lq_spread_alpha_at(lq_sine(below), across, &alpha, error);
+    if (status == LQ_OK) lobes[last + 1] = lobe_of(through, below, alpha);
+    return status;
 }
 
 static lq_status bake_through(const baking *b, const lq_progress *progress, lq_error *error) {

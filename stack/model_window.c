@@ -127,12 +127,9 @@ static lq_status set_through(lq_windowed *made, double n, double mu, const lq_st
         made->through += paths[p].transmitted.energy;
         across += paths[p].transmitted.energy * paths[p].transmitted.across;
     }
-    if (!(made->through > 0.0)) return LQ_OK;
-    lq_spread spread = {0};
-    const lq_status status = lq_spread_make(&spread, &cosine, 1, error);
-    if (status == LQ_OK) made->through_alpha = lq_spread_alpha(&spread, 0, across / made->through);
-    lq_spread_free(&spread);
-    return status;
+    return made->through > 0.0
+               ? lq_spread_alpha_at(cosine, across / made->through, &made->through_alpha, error)
+               : LQ_OK;
 }
 
 lq_status lq_model_windowed(const lq_stack *stack, double mu, double least_alpha, int threads,

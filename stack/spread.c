@@ -88,3 +88,11 @@ double lq_spread_alpha(const lq_spread *spread, size_t m, double across) {
     const double share = fmin(fmax((at - low) / (high - low), 0.0), 1.0);
     return alpha_of(above - 1) + share * (alpha_of(above) - alpha_of(above - 1));
 }
+
+lq_status lq_spread_alpha_at(double mu, double across, double *alpha, lq_error *error) {
+    lq_spread spread = {0};
+    const lq_status status = lq_spread_make(&spread, &mu, 1, error);
+    if (status == LQ_OK) *alpha = lq_spread_alpha(&spread, 0, across);
+    lq_spread_free(&spread);
+    return status;
+}

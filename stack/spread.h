@@ -25,4 +25,7 @@ void lq_spread_free(lq_spread *spread);
 /* The least alpha whose lobe spreads so far at cosine `m` of the list; 1 where none does. */
 double lq_spread_alpha(const lq_spread *spread, size_t m, double across);
 
+/* The same of one cosine. */
+lq_status lq_spread_alpha_at(double mu, double across, double *alpha, lq_error *error);
+
 #endif

@@ -2,6 +2,13 @@
 # `failures`. out and err hold what the program printed last.
 failures=0
 
+# A folder that goes with the test, to work in: $work.
+own_folder() {
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    cd "$work"
+}
+
 fail() {
     echo "FAIL: $*" >&2
     failures=$((failures + 1))

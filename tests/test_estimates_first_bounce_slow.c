@@ -4,6 +4,7 @@
 #include "tests/expect.h"
 
 #include "lacquer.h"
+#include "tests/measured.h"
 #include "tests/uniform.h"
 
 #include <stdio.h>
@@ -18,19 +19,6 @@ enum { KINDS = sizeof kinds / sizeof *kinds, NDFS = sizeof ndfs / sizeof *ndfs }
 static size_t points_asked(void) {
     const char *asked = getenv("LACQUER_POINTS");
     return asked ? (size_t)strtoul(asked, NULL, 10) : 50;
-}
-
-/* Beckmann's shape at one roughness, as somebody would measure it. */
-static void write_samples(char *path) {
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    FILE *out = fdopen(file, "w");
-    fputs("theta_deg,alpha=0.3\n", out);
-    for (int i = 0; i < 180; i++) {
-        const double theta = 0.5 * i * 3.14159265358979323846 / 180.0, t = tan(theta), c = cos(theta);
-        fprintf(out, "%.17g,%.17g\n", 0.5 * i, exp(-t * t / 0.09) / (c * c * c * c));
-    }
-    assert_int_equal(fclose(out), 0);
 }
 
 /* Axis `a` at u in [0,1): even over what a scene asks, or towards the ends where integrals are hard. */
@@ -74,7 +62,9 @@ static void estimates_cover_the_truth(void **state) {
     (void)state;
     char path[] = "/tmp/lacquer-ndf-XXXXXX", text[64];
     int lies = 0;
-    write_samples(path);
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    write_measured(fdopen(file, "w"));
     for (int n = 0; n < NDFS; n++) {
         lq_settings settings = lq_settings_default();
         double low, high;

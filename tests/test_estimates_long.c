@@ -5,6 +5,7 @@
 #include "tests/expect.h"
 
 #include "lacquer.h"
+#include "tests/measured.h"
 #include "tests/uniform.h"
 
 #include <stdio.h>
@@ -32,13 +33,7 @@ static void make_ndfs(const char *folder) {
     char text[1024];
     snprintf(text, sizeof text, "%s/m", folder);
     FILE *out = fopen(text, "w");
-    assert_non_null(out);
-    fputs("theta_deg,alpha=0.3\n", out);
-    for (int i = 0; i < 180; i++) {
-        const double theta = 0.5 * i * 3.14159265358979323846 / 180.0, t = tan(theta), c = cos(theta);
-        fprintf(out, "%.17g,%.17g\n", 0.5 * i, exp(-t * t / 0.09) / (c * c * c * c));
-    }
-    assert_int_equal(fclose(out), 0);
+    write_measured(out);
     const char *source = getenv("LACQUER_SOURCE");
     snprintf(text, sizeof text, "cc -O2 -shared -fPIC -I%s %s/docs/ndf_plugin.c -o %s/p.so -lm",
              source ? source : ".", source ? source : ".", folder);

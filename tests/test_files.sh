@@ -4,9 +4,7 @@
 set -euo pipefail
 : "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?source folder}"
 source "$LACQUER_SOURCE/tests/expect.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+own_folder
 export XDG_CACHE_HOME=$work/xdg
 table=(precompute albedo --axis mu=0.1:1:4 --axis alpha=0.2:1:3 -o)
 

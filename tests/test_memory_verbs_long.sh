@@ -4,9 +4,7 @@
 set -euo pipefail
 : "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?source folder}"
 source "$LACQUER_SOURCE/tests/expect.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+own_folder
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 if nm "$LACQUER" 2>/dev/null | grep -E '__(asan|tsan)_init' >/dev/null ||
     ! "${CC:-cc}" -O1 -shared -fPIC "$LACQUER_SOURCE/tests/preload/failing_malloc.c" -o failing.so -ldl; then

@@ -6,9 +6,7 @@ set -euo pipefail
 source "$LACQUER_SOURCE/tests/expect.sh"
 mpi=$(dirname "$LACQUER")/lacquer-mpi
 [ -x "$mpi" ] && command -v mpirun >/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+own_folder
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 args="fgd --axis mu=0:1:5 --axis alpha=0.02:1:50 --axis n=0.2:4:7 --axis kappa=0:4:6"
 

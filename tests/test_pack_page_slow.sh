@@ -1,21 +1,10 @@
 #!/usr/bin/env bash
 # The page of a scene's pack in headless Chromium: no errors, every material drawn, sliders and albedo change the picture,
 # and pack and exact stack differ by no more than the budget wherever the sliders are. Skipped without Chromium.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-lacquer=${LACQUER:-$PWD/build/release/lacquer}
-recipes=$PWD/recipes
+. "$(dirname "$0")/scratch.sh"
+recipes=$root/recipes
 chromium=$(command -v chromium || command -v chromium-browser || true)
 [ -n "$chromium" ] || { echo "no chromium"; exit 77; }
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-export XDG_CACHE_HOME=$scratch/xdg
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
 
 "$lacquer" pack "$recipes/scene.json" -o pack >/dev/null
 [ "$(stat -c %s pack/index.html)" -le 2000000 ] || fail "a page of $(stat -c %s pack/index.html) bytes"

@@ -1,18 +1,7 @@
 #!/usr/bin/env bash
 # The shipped recipes: their budgets are met, `realtime` stays within 300 KB in one texture and its three mappings are exact where
 # shaders read them, a second run takes everything from the cache.
-set -euo pipefail
-cd "${LACQUER_SOURCE:-$(dirname "$0")/..}"
-root=$PWD
-lacquer=${LACQUER:-$root/build/release/lacquer}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch"
-
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
+. "$(dirname "$0")/scratch.sh"
 
 # Kept for test_readme_slow.sh, which runs after this and packs one of them again.
 cache=${LACQUER_BUILD:-$root/build/release}/test-cache/lacquer

@@ -4,9 +4,7 @@
 set -euo pipefail
 : "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?source folder}"
 source "$LACQUER_SOURCE/tests/expect.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+own_folder
 export OMP_NUM_THREADS=2 OPENBLAS_NUM_THREADS=1
 args="fgd --axis mu=0:1:5 --axis alpha=0.02:1:70 --axis n=0.2:4:7 --axis kappa=0:4:6"
 

@@ -4,9 +4,7 @@
 set -euo pipefail
 : "${LACQUER:?path of the program}" "${LACQUER_SOURCE:?source folder}"
 source "$LACQUER_SOURCE/tests/expect.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+own_folder
 /usr/bin/time -f %M -o peak "$LACQUER" precompute fgd --axis mu=0:1:128 --axis alpha=0:1:128 --axis n=0.5:4:128 \
     --axis kappa=0:4:128 -o big.exr || fail "exit $?"
 [ "$(stat -c %s big.exr)" -gt 1000000000 ] || fail "a file of $(stat -c %s big.exr) bytes"
